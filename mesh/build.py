@@ -1,0 +1,59 @@
+"""From generators to a validated mesh, and from a number of cells to an SCVT."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.delaunay import delaunay
+from mesh.errors import MeshError
+from mesh.generators import starting_points
+from mesh.metrics import compute_metrics
+from mesh.scvt import Callback, optimize
+from mesh.sphere import Array, normalize
+from mesh.topology import build_topology
+from mesh.validate import validate_mesh
+from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
+
+DEFAULT_TOLERANCE = 1e-8
+"""Centroid residual, in mean spacings, at which an SCVT counts as converged."""
+
+
+def mesh_from_points(points: Array, triangles: NDArray[np.int32] | None = None) -> VoronoiMesh:
+    """The validated Voronoi mesh, on the unit sphere, of generators `points` (n_cells, 3).
+
+    Points are projected onto the sphere. `triangles` may give their Delaunay triangulation. Raises `MeshError`
+    where points are not finite, coincide or do not surround the sphere.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise MeshError(f"generators must have shape (n_cells, 3), not {points.shape}")
+    lengths = np.linalg.norm(points, axis=1)
+    wrong = np.flatnonzero(~(np.isfinite(lengths) & (lengths > 0.0)))
+    if len(wrong):
+        raise MeshError(f"generator {wrong[0]} is {points[wrong[0]].tolist()}, which is no point on a sphere")
+    points = normalize(points)
+    topology = build_topology(delaunay(points) if triangles is None else triangles, len(points))
+    metrics = compute_metrics(points, topology)
+    mesh = VoronoiMesh(
+        **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
+        **{name: getattr(metrics, name) for name in METRICS_NAMES},
+        mesh_density=np.ones(len(points)),
+        sphere_radius=1.0,
+    )
+    validate_mesh(mesh)
+    return mesh
+
+
+def scvt_mesh(
+    cells: int,
+    start: str | None = None,
+    method: str = "lbfgs",
+    tolerance: float = DEFAULT_TOLERANCE,
+    max_iterations: int = 10_000,
+    callback: Callback | None = None,
+) -> VoronoiMesh:
+    """A validated SCVT of uniform density on the unit sphere; see `mesh.scvt.optimize` for the options.
+
+    Starts from the bisected icosahedron where that has this number of cells, else from the Fibonacci spiral.
+    """
+    result = optimize(starting_points(cells, start), method, tolerance, max_iterations, callback)
+    return mesh_from_points(result.points, result.triangles)

@@ -1,0 +1,129 @@
+"""The discrete calculus of the C-grid as sparse matrices: one row per entity where the result lives.
+
+Thickness-like fields live at cells, normal velocities at edges, vorticity-like fields at vertices. The matrices
+are the plain statement of the operators; the solver's kernels are tested against them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.sparse import coo_array, csr_array
+
+from mesh.sphere import Array, dot, east_north
+from mesh.voronoi_mesh import Topology, VoronoiMesh
+
+
+@dataclass(frozen=True, eq=False)
+class Operators:
+    """All operators of one mesh; apply them with `@`.
+
+    `divergence` (cells x edges), `gradient` (edges x cells), `curl` (vertices x edges) and `perp` (edges x edges)
+    follow Ringler et al. (2010), equations (21), (22), (23) and (24). `kinetic_energy` (cells x edges) acts on
+    squared normal velocities (equation (63)). `cell_to_edge` and `vertex_to_edge` are means of two,
+    `cell_to_vertex` weights by kite areas (equation (25)).
+    """
+
+    divergence: csr_array
+    gradient: csr_array
+    curl: csr_array
+    perp: csr_array
+    kinetic_energy: csr_array
+    cell_to_edge: csr_array
+    cell_to_vertex: csr_array
+    vertex_to_edge: csr_array
+
+
+def build_operators(mesh: VoronoiMesh) -> Operators:
+    """The operators of `mesh`, in the units of its radius."""
+    n_cells, n_edges, n_vertices = mesh.n_cells, mesh.n_edges, mesh.n_vertices
+    edge = np.arange(n_edges)
+    first, second = mesh.cells_on_edge.T
+    tail, head = mesh.vertices_on_edge.T
+    ones = np.ones(n_edges)
+
+    outflow = _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, n_cells)
+    circulation = _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, n_vertices)
+    quarter = 0.25 * mesh.dv_edge * mesh.dc_edge
+    vertex = np.repeat(np.arange(n_vertices), 3)
+    return Operators(
+        divergence=_scale_rows(1.0 / mesh.area_cell, outflow),
+        gradient=_scale_rows(1.0 / mesh.dc_edge, _two_per_edge(second, first, ones, -ones, n_cells).T),
+        curl=_scale_rows(1.0 / mesh.area_triangle, circulation),
+        perp=_perp(mesh),
+        kinetic_energy=_scale_rows(1.0 / mesh.area_cell, _two_per_edge(first, second, quarter, quarter, n_cells)),
+        cell_to_edge=csr_array(_two_per_edge(first, second, 0.5 * ones, 0.5 * ones, n_cells).T),
+        cell_to_vertex=_scale_rows(
+            1.0 / mesh.area_triangle,
+            coo_array(
+                (mesh.kite_areas_on_vertex.ravel(), (vertex, mesh.cells_on_vertex.ravel())),
+                shape=(n_vertices, n_cells),
+            ),
+        ),
+        vertex_to_edge=csr_array(
+            coo_array(
+                (np.full(2 * n_edges, 0.5), (np.concatenate([edge, edge]), np.concatenate([tail, head]))),
+                shape=(n_edges, n_vertices),
+            )
+        ),
+    )
+
+
+def _two_per_edge(rows_a: Array, rows_b: Array, values_a: Array, values_b: Array, n_rows: int) -> coo_array:
+    """Matrix (n_rows, n_edges) with one entry for each end of every edge."""
+    edge = np.arange(len(rows_a))
+    return coo_array(
+        (
+            np.concatenate([values_a, values_b]),
+            (np.concatenate([rows_a, rows_b]), np.concatenate([edge, edge])),
+        ),
+        shape=(n_rows, len(edge)),
+    )
+
+
+def _scale_rows(factors: Array, matrix: coo_array) -> csr_array:
+    rows = csr_array(matrix)
+    rows.data *= np.repeat(factors, np.diff(rows.indptr))
+    return rows
+
+
+def _perp(mesh: VoronoiMesh) -> csr_array:
+    filled = np.arange(mesh.edges_on_edge.shape[1]) < mesh.n_edges_on_edge[:, None]
+    row = np.repeat(np.arange(mesh.n_edges), mesh.n_edges_on_edge)
+    values, columns = mesh.weights_on_edge[filled], mesh.edges_on_edge[filled]
+    return csr_array(coo_array((values, (row, columns)), shape=(mesh.n_edges, mesh.n_edges)))
+
+
+def normal_velocity_from_streamfunction(mesh: VoronoiMesh, streamfunction: Array) -> Array:
+    """Normal component of k x grad(psi) at edges (n_edges,), from psi at vertices (n_vertices,).
+
+    Minus the difference of psi along the tangent over `dv_edge`; its discrete divergence vanishes to round-off.
+    """
+    tail, head = mesh.vertices_on_edge.T
+    return -(streamfunction[head] - streamfunction[tail]) / mesh.dv_edge
+
+
+def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array, Array]:
+    """Zonal and meridional velocity at cell centres (n_cells,), from normal velocities (n_edges,).
+
+    Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
+    exact for a uniform flow in the plane.
+    """
+    east, north = east_north(mesh.lon_cell, mesh.lat_cell)
+    edges, inside = edges_of_cells(mesh)
+    normals = mesh.cell_points[mesh.cells_on_edge[:, 1]] - mesh.cell_points[mesh.cells_on_edge[:, 0]]
+    normals /= np.sqrt(dot(normals, normals))[:, None]
+    normals_east = inside * dot(normals[edges], east[:, None, :])
+    normals_north = inside * dot(normals[edges], north[:, None, :])
+    speeds = inside * normal_velocity[edges]
+    ee, en, nn = (normals_east**2).sum(1), (normals_east * normals_north).sum(1), (normals_north**2).sum(1)
+    right_east, right_north = (normals_east * speeds).sum(1), (normals_north * speeds).sum(1)
+    determinant = ee * nn - en * en
+    zonal = (nn * right_east - en * right_north) / determinant
+    meridional = (ee * right_north - en * right_east) / determinant
+    return zonal, meridional
+
+
+def edges_of_cells(topology: Topology) -> tuple[Array, Array]:
+    """Edges of every cell (n_cells, max_edges), 0 where filled, and 1.0 or 0.0 for what is an edge or filled."""
+    inside = np.arange(topology.max_edges) < topology.n_edges_on_cell[:, None]
+    return np.where(inside, topology.edges_on_cell, 0), inside.astype(float)

@@ -1,0 +1,86 @@
+"""How good a mesh is: distances between neighbours, shapes of triangles, centroid residual, areas."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.delaunay import half_edge_twins
+from mesh.scvt import mass_and_moment, mean_spacing
+from mesh.sphere import Array, arc_length, dot, normalize
+from mesh.voronoi_mesh import VoronoiMesh
+
+
+@dataclass(frozen=True)
+class Quality:
+    """The measures of Ju, Ringler and Gunzburger (2011), section 4, and some more.
+
+    `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
+    longest distance to a neighbour; `q` of a triangle with sides a, b, c is (b+c-a)(c+a-b)(a+b-c)/(abc), one if
+    equilateral. Distances are chords. `residual` is the largest distance between a generator and the constrained
+    centroid of its cell, in mean spacings (None where the density is not uniform); `obtuse` counts Delaunay
+    triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    """
+
+    cells: int
+    mu: float
+    sigma_avg: float
+    sigma_min: float
+    q_avg: float
+    q_min: float
+    residual: float | None
+    obtuse: int
+    area_ratio: float
+
+
+def mesh_quality(mesh: VoronoiMesh) -> Quality:
+    """Measure `mesh`; see `Quality`."""
+    sigma, q = neighbour_distance_ratio(mesh), triangle_quality(mesh)
+    chords = edge_chords(mesh)
+    return Quality(
+        cells=mesh.n_cells,
+        mu=float(chords.max() / chords.min()),
+        sigma_avg=float(sigma.mean()),
+        sigma_min=float(sigma.min()),
+        q_avg=float(q.mean()),
+        q_min=float(q.min()),
+        residual=centroid_residual(mesh),
+        obtuse=int(np.count_nonzero(obtuse_triangles(mesh))),
+        area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
+    )
+
+
+def edge_chords(mesh: VoronoiMesh) -> Array:
+    """Straight distance between the two cells of each edge (n_edges,), on the unit sphere."""
+    points = mesh.cell_points / mesh.sphere_radius
+    difference = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
+    return np.sqrt(dot(difference, difference))
+
+
+def neighbour_distance_ratio(mesh: VoronoiMesh) -> Array:
+    """Shortest over longest distance to a neighbour, sigma (n_cells,)."""
+    chords = edge_chords(mesh)
+    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    distances = chords[np.where(inside, mesh.edges_on_cell, 0)]
+    return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
+
+
+def triangle_quality(mesh: VoronoiMesh) -> Array:
+    """The measure q of the Delaunay triangles (n_vertices,): twice the inscribed over the circumscribed radius."""
+    a, b, c = edge_chords(mesh)[mesh.edges_on_vertex].T
+    return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c)
+
+
+def obtuse_triangles(mesh: VoronoiMesh) -> Array:
+    """Whether each Delaunay triangle (n_vertices,) is obtuse, so that its circumcentre lies outside."""
+    squares = np.sort(edge_chords(mesh)[mesh.edges_on_vertex] ** 2, axis=1)
+    return squares[:, 2] > squares[:, 0] + squares[:, 1]
+
+
+def centroid_residual(mesh: VoronoiMesh) -> float | None:
+    """Largest distance from generator to constrained centroid, in mean spacings; None for a varying density."""
+    if np.ptp(mesh.mesh_density) > 0.0:
+        return None
+    points = normalize(mesh.cell_points)
+    triangles = mesh.cells_on_vertex
+    _, moment = mass_and_moment(points, triangles, half_edge_twins(triangles))
+    return float(arc_length(points, normalize(moment)).max()) / mean_spacing(mesh.n_cells)

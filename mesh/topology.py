@@ -1,0 +1,112 @@
+"""From triangles to consistently ordered cells, edges and vertices: the only place that sorts connectivity."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.delaunay import half_edge_twins
+from mesh.errors import MeshError
+from mesh.voronoi_mesh import Index, Topology
+
+FILL = -1
+
+
+def build_topology(triangles: NDArray[np.int32], n_cells: int) -> Topology:
+    """Connectivity of the Voronoi mesh that is dual to counter-clockwise `triangles` (n_vertices, 3).
+
+    Vertices and edges are numbered after their lowest cells, whatever the order of the triangles, so the result
+    depends on the triangulation alone. Raises `MeshError` where the triangles do not close a sphere.
+    """
+    triangles = _in_canonical_order(triangles)
+    if len(triangles) != 2 * n_cells - 4:
+        raise MeshError(f"{n_cells} cells need {2 * n_cells - 4} triangles to close the sphere, not {len(triangles)}")
+    twins = half_edge_twins(triangles)
+    edge_of, forward = _number_edges(triangles, twins)
+    start = triangles.ravel()
+    end = start[twins]
+    left, right = forward // 3, twins[forward] // 3
+
+    rings = _rings(start, twins, edge_of, n_cells)
+    filled = rings != FILL
+    edges_on_cell = np.where(filled, edge_of[rings], FILL)
+    n_edges_on_cell = filled.sum(axis=1)
+    cells_on_edge = np.stack([start[forward], end[forward]], axis=1)
+    n_edges_on_edge, edges_on_edge = _edges_on_edge(edges_on_cell, n_edges_on_cell, cells_on_edge)
+    half_edges = edge_of.reshape(-1, 3)
+    return Topology(
+        n_edges_on_cell=_index(n_edges_on_cell),
+        cells_on_cell=_index(np.where(filled, end[rings], FILL)),
+        edges_on_cell=_index(edges_on_cell),
+        vertices_on_cell=_index(np.where(filled, rings // 3, FILL)),
+        n_edges_on_edge=_index(n_edges_on_edge),
+        edges_on_edge=_index(edges_on_edge),
+        cells_on_edge=_index(cells_on_edge),
+        vertices_on_edge=_index(np.stack([right, left], axis=1)),
+        cells_on_vertex=_index(triangles),
+        edges_on_vertex=_index(np.roll(half_edges, 1, axis=1)),
+        boundary_vertex=np.zeros(len(triangles), dtype=np.int32),
+    )
+
+
+def _index(array: NDArray) -> Index:
+    return np.ascontiguousarray(array, dtype=np.int32)
+
+
+def _in_canonical_order(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Triangles turned so that the lowest corner comes first, and sorted."""
+    lowest = np.argmin(triangles, axis=1)
+    corners = (lowest[:, None] + np.arange(3)) % 3
+    turned = np.take_along_axis(triangles, corners, axis=1).astype(np.int64)
+    return turned[np.lexsort(turned.T[::-1])]
+
+
+def _number_edges(triangles: NDArray[np.int64], twins: NDArray[np.int64]) -> tuple[NDArray, NDArray]:
+    """Edge number of every half-edge, and of every edge its half-edge from the lower to the higher cell."""
+    start = triangles.ravel()
+    end = start[twins]
+    forward = np.flatnonzero(start < end)
+    forward = forward[np.lexsort((end[forward], start[forward]))]
+    edge_of = np.empty(len(start), dtype=np.int64)
+    edge_of[forward] = np.arange(len(forward))
+    edge_of[twins[forward]] = np.arange(len(forward))
+    return edge_of, forward
+
+
+def _rings(start: NDArray, twins: NDArray, edge_of: NDArray, n_cells: int) -> NDArray:
+    """Outgoing half-edges (n_cells, max_edges) of each cell, counter-clockwise from its lowest edge."""
+    by_edge = np.argsort(edge_of, kind="stable")[::-1]
+    first = np.full(n_cells, FILL, dtype=np.int64)
+    first[start[by_edge]] = by_edge
+    if np.any(first == FILL):
+        raise MeshError(f"generators {np.flatnonzero(first == FILL)[:5].tolist()} belong to no triangle")
+    half_edges = np.arange(len(start))
+    # The half-edge before h in its triangle ends at the start of h, so its twin leaves that cell next in turn.
+    following = twins[half_edges + np.where(half_edges % 3 == 0, 2, -1)]
+    columns = [first]
+    going = first
+    while True:
+        going = np.where(going == FILL, FILL, following[going])
+        going = np.where(going == first, FILL, going)
+        if np.all(going == FILL):
+            break
+        columns.append(going)
+    rings = np.stack(columns, axis=1)
+    if np.count_nonzero(rings != FILL) != len(start):
+        raise MeshError("the triangles round some generator do not form one closed ring")
+    return rings
+
+
+def _edges_on_edge(edges_on_cell: NDArray, n_edges_on_cell: NDArray, cells_on_edge: NDArray) -> tuple[NDArray, NDArray]:
+    """Number and list of the edges round both cells of each edge, the edge itself left out."""
+    n_edges, max_edges = len(cells_on_edge), edges_on_cell.shape[1]
+    edge = np.arange(n_edges)
+    size = n_edges_on_cell[cells_on_edge]
+    result = np.full((n_edges, 2 * max_edges), FILL, dtype=np.int64)
+    for side in (0, 1):
+        ring = edges_on_cell[cells_on_edge[:, side]]
+        position = np.argmax(ring == edge[:, None], axis=1)
+        offset = np.zeros(n_edges, dtype=np.int64) if side == 0 else size[:, 0] - 1
+        for step in range(1, max_edges):
+            inside = step < size[:, side]
+            neighbour = ring[edge, (position + step) % size[:, side]]
+            result[edge[inside], (offset + step - 1)[inside]] = neighbour[inside]
+    return size.sum(axis=1) - 2, result

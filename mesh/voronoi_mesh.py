@@ -1,0 +1,127 @@
+"""The Voronoi mesh as data: connectivity and metrics, no computation beyond views and rescaling.
+
+Names are those of the MPAS mesh specification in snake_case; `mesh.conventions` gives every array its
+dimensions, units and meaning. In memory, indices count from 0 and -1 fills what a short ring leaves over.
+"""
+
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False)
+class Topology:
+    """Which cells, edges and vertices touch; rings run counter-clockwise seen from outside.
+
+    The normal of edge e points from `cells_on_edge[e, 0]` to `[e, 1]`, its tangent k x n from
+    `vertices_on_edge[e, 0]` to `[e, 1]`. `vertices_on_cell[c, j]` lies between edges j and j + 1 of cell c, and
+    `cells_on_vertex[v, j]` between edges j and j + 1 of vertex v. `edges_on_edge` goes round the first cell,
+    starting after the edge itself, then round the second.
+    """
+
+    n_edges_on_cell: Index
+    cells_on_cell: Index
+    edges_on_cell: Index
+    vertices_on_cell: Index
+    n_edges_on_edge: Index
+    edges_on_edge: Index
+    cells_on_edge: Index
+    vertices_on_edge: Index
+    cells_on_vertex: Index
+    edges_on_vertex: Index
+    boundary_vertex: Index
+
+    @property
+    def n_cells(self) -> int:
+        """Number of Voronoi cells."""
+        return len(self.n_edges_on_cell)
+
+    @property
+    def n_edges(self) -> int:
+        """Number of edges."""
+        return len(self.cells_on_edge)
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices, which is that of Delaunay triangles."""
+        return len(self.cells_on_vertex)
+
+    @property
+    def max_edges(self) -> int:
+        """Width of the ring arrays: the largest number of edges of a cell, or more in files of others."""
+        return self.edges_on_cell.shape[1]
+
+
+@dataclass(frozen=True, eq=False)
+class Metrics:
+    """Where the entities are and how large: lengths in units of the sphere's radius as stored, angles in radians.
+
+    `kite_areas_on_vertex[v, j]` is the part of cell `cells_on_vertex[v, j]` in triangle v. The tangential velocity
+    at edge e is the sum of `weights_on_edge[e, j]` times the normal velocity at `edges_on_edge[e, j]`.
+    """
+
+    lat_cell: Array
+    lon_cell: Array
+    x_cell: Array
+    y_cell: Array
+    z_cell: Array
+    lat_edge: Array
+    lon_edge: Array
+    x_edge: Array
+    y_edge: Array
+    z_edge: Array
+    lat_vertex: Array
+    lon_vertex: Array
+    x_vertex: Array
+    y_vertex: Array
+    z_vertex: Array
+    dc_edge: Array
+    dv_edge: Array
+    angle_edge: Array
+    area_cell: Array
+    area_triangle: Array
+    kite_areas_on_vertex: Array
+    weights_on_edge: Array
+
+
+@dataclass(frozen=True, eq=False)
+class VoronoiMesh(Metrics, Topology):
+    """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`."""
+
+    mesh_density: Array
+    sphere_radius: float
+
+    @property
+    def cell_points(self) -> Array:
+        """Cell centres (n_cells, 3), in the units of `sphere_radius`."""
+        return np.stack([self.x_cell, self.y_cell, self.z_cell], axis=1)
+
+    @property
+    def edge_points(self) -> Array:
+        """Edge points (n_edges, 3), midway between the two cell centres, in the units of `sphere_radius`."""
+        return np.stack([self.x_edge, self.y_edge, self.z_edge], axis=1)
+
+    @property
+    def vertex_points(self) -> Array:
+        """Vertices (n_vertices, 3), in the units of `sphere_radius`."""
+        return np.stack([self.x_vertex, self.y_vertex, self.z_vertex], axis=1)
+
+    def scaled(self, radius: float) -> "VoronoiMesh":
+        """The same mesh on a sphere of another radius, in metres."""
+        from mesh.conventions import MESH_VARIABLES
+
+        factor = radius / self.sphere_radius
+        changed = {
+            variable.name: getattr(self, variable.name) * factor**variable.length_power
+            for variable in MESH_VARIABLES
+            if variable.length_power
+        }
+        return replace(self, sphere_radius=float(radius), **changed)
+
+
+TOPOLOGY_NAMES = tuple(field.name for field in fields(Topology))
+METRICS_NAMES = tuple(field.name for field in fields(Metrics))
