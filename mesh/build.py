@@ -1,14 +1,14 @@
 """From generators to a validated mesh, and from a number of cells to an SCVT."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
 from mesh.errors import MeshError
 from mesh.generators import starting_points
 from mesh.metrics import compute_metrics
 from mesh.scvt import Callback, optimize
-from mesh.sphere import Array, normalize
+from mesh.sphere import normalize
 from mesh.topology import build_topology
 from mesh.validate import validate_mesh
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
@@ -17,7 +17,7 @@ DEFAULT_TOLERANCE = 1e-8
 """Centroid residual, in mean spacings, at which an SCVT counts as converged."""
 
 
-def mesh_from_points(points: Array, triangles: NDArray[np.int32] | None = None) -> VoronoiMesh:
+def mesh_from_points(points: Array, triangles: Index | None = None) -> VoronoiMesh:
     """The validated Voronoi mesh, on the unit sphere, of generators `points` (n_cells, 3).
 
     Points are projected onto the sphere. `triangles` may give their Delaunay triangulation. Raises `MeshError`

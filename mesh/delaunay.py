@@ -1,14 +1,14 @@
 """Spherical Delaunay triangulation by the convex hull, and the test whether one is still Delaunay."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import ConvexHull, QhullError
 
+from mesh.arrays import Array, Index
 from mesh.errors import MeshError
-from mesh.sphere import Array, dot
+from mesh.sphere import dot
 
 
-def delaunay(points: Array) -> NDArray[np.int32]:
+def delaunay(points: Array) -> Index:
     """Triangles (2n - 4, 3) of the spherical Delaunay triangulation of unit vectors `points` (n, 3).
 
     The facets of the convex hull are the Delaunay triangles (Renka 1997). Corners run counter-clockwise seen
@@ -37,7 +37,7 @@ def delaunay(points: Array) -> NDArray[np.int32]:
     return triangles
 
 
-def half_edge_twins(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
+def half_edge_twins(triangles: Index) -> Index:
     """For half-edge 3 t + k, from corner k of triangle t to corner k + 1, the half-edge that runs back.
 
     Returns shape (3 n_triangles,). Raises `MeshError` where a side does not belong to exactly two triangles
@@ -55,7 +55,7 @@ def half_edge_twins(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
     return twins
 
 
-def is_delaunay(points: Array, triangles: NDArray[np.int32], twins: NDArray[np.int64]) -> bool:
+def is_delaunay(points: Array, triangles: Index, twins: Index) -> bool:
     """Whether a closed triangulation of moved points is still Delaunay.
 
     True where every triangle keeps its orientation and no corner across a side lies beyond the plane of the

@@ -1,28 +1,27 @@
 """Starting points on the unit sphere: recursive bisection of the icosahedron, and the Fibonacci spiral."""
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay, half_edge_twins
 from mesh.errors import MeshError
-from mesh.sphere import Array, normalize
+from mesh.sphere import normalize
 
 MINIMUM_CELLS = 12
 
 
 def icosahedron() -> Array:
-    """The 12 vertices (12, 3) of a regular icosahedron with a vertex at each pole."""
-    ring = 2.0 * np.pi * np.arange(5) / 5.0
-    height, radius = 1.0 / np.sqrt(5.0), 2.0 / np.sqrt(5.0)
-    north = np.stack([radius * np.cos(ring), radius * np.sin(ring), np.full(5, height)], axis=1)
-    south = np.stack(
-        [radius * np.cos(ring + np.pi / 5.0), radius * np.sin(ring + np.pi / 5.0), np.full(5, -height)],
-        axis=1,
-    )
-    return np.concatenate([[[0.0, 0.0, 1.0]], north, south, [[0.0, 0.0, -1.0]]])
+    """Vertices (12, 3) of the regular icosahedron at the cyclic permutations of (0, +-1, +-golden ratio).
+
+    The poles are midpoints of edges. With vertices there, zonal flows would follow the symmetry of the mesh and
+    look more accurate than flows along any other axis.
+    """
+    golden = 0.5 * (1.0 + np.sqrt(5.0))
+    vertices = [(0.0, a, b * golden) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    return normalize(np.array([np.roll(vertex, shift) for vertex in vertices for shift in range(3)]))
 
 
-def bisect(points: Array, triangles: NDArray[np.int32]) -> tuple[Array, NDArray[np.int32]]:
+def bisect(points: Array, triangles: Index) -> tuple[Array, Index]:
     """Insert the midpoint of every side; each triangle becomes four.
 
     Takes points (n, 3) and closed triangles (m, 3); returns points (n + 3 m / 2, 3), the old ones first, and

@@ -11,6 +11,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from mesh.arrays import Index
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
 from mesh.errors import MeshError, MeshWarning
 from mesh.files import written_aside
@@ -178,7 +179,7 @@ def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
     return np.ascontiguousarray(values, dtype=np.int32) - (1 if variable.is_index else 0)
 
 
-def _fill_beyond(ring: NDArray, counts: NDArray[np.int32], fill: float) -> NDArray:
+def _fill_beyond(ring: NDArray, counts: Index, fill: float) -> NDArray:
     """The array with everything beyond the count of each row set to `fill`, whatever the file has there."""
     beyond = np.arange(ring.shape[1]) >= counts[:, None]
     return np.where(beyond, ring.dtype.type(fill), ring)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from mesh.arrays import Array, Index, sum_by_index
 from mesh.sphere import (
-    Array,
     arc_length,
     circumcenter,
     dot,
@@ -12,7 +12,7 @@ from mesh.sphere import (
     to_lonlat,
     triangle_area,
 )
-from mesh.voronoi_mesh import Index, Metrics, Topology
+from mesh.voronoi_mesh import Metrics, Topology
 from mesh.weights import tangential_weights
 
 
@@ -27,25 +27,28 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     centers = points[topology.cells_on_edge]
     edges = normalize(centers[:, 0] + centers[:, 1])
     kites = kite_areas(points, edges, vertices, topology.cells_on_vertex, topology.edges_on_vertex)
-    area_cell = np.bincount(topology.cells_on_vertex.ravel(), kites.ravel(), minlength=len(points))
+    area_cell = sum_by_index(topology.cells_on_vertex, kites, len(points))
     dc_edge = arc_length(centers[:, 0], centers[:, 1])
     ends = vertices[topology.vertices_on_edge]
     dv_edge = arc_length(ends[:, 0], ends[:, 1])
-    lon_edge, lat_edge = to_lonlat(edges)
-    east, north = east_north(lon_edge, lat_edge)
-    normal = centers[:, 1] - centers[:, 0]
     return Metrics(
         **_coordinates("cell", points),
         **_coordinates("edge", edges),
         **_coordinates("vertex", vertices),
         dc_edge=dc_edge,
         dv_edge=dv_edge,
-        angle_edge=np.arctan2(dot(normal, north), dot(normal, east)),
+        angle_edge=edge_angles(centers[:, 1] - centers[:, 0], *to_lonlat(edges)),
         area_cell=area_cell,
         area_triangle=kites.sum(axis=1),
         kite_areas_on_vertex=kites,
         weights_on_edge=tangential_weights(topology, kites, area_cell, dc_edge, dv_edge),
     )
+
+
+def edge_angles(normal: Array, lon_edge: Array, lat_edge: Array) -> Array:
+    """Angles (n_edges,) of normals (n_edges, 3), counter-clockwise from east at the given position, in [-pi, pi]."""
+    east, north = east_north(lon_edge, lat_edge)
+    return np.arctan2(dot(normal, north), dot(normal, east))
 
 
 def kite_areas(points: Array, edges: Array, vertices: Array, cells_on_vertex: Index, edges_on_vertex: Index) -> Array:

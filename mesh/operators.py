@@ -9,7 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from mesh.sphere import Array, dot, east_north
+from mesh.arrays import Array, sum_by_index
+from mesh.sphere import dot, east_north
 from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 
@@ -127,3 +128,9 @@ def edges_of_cells(topology: Topology) -> tuple[Array, Array]:
     """Edges of every cell (n_cells, max_edges), 0 where filled, and 1.0 or 0.0 for what is an edge or filled."""
     inside = np.arange(topology.max_edges) < topology.n_edges_on_cell[:, None]
     return np.where(inside, topology.edges_on_cell, 0), inside.astype(float)
+
+
+def vertex_to_cell(mesh: VoronoiMesh, values: Array) -> Array:
+    """Kite-weighted mean (n_cells,) of values at the vertices (n_vertices,) of each cell."""
+    weighted = mesh.kite_areas_on_vertex * values[:, None]
+    return sum_by_index(mesh.cells_on_vertex, weighted, mesh.n_cells) / mesh.area_cell

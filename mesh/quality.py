@@ -3,10 +3,12 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
+from mesh.arrays import Array
 from mesh.delaunay import half_edge_twins
 from mesh.scvt import mass_and_moment, mean_spacing
-from mesh.sphere import Array, arc_length, dot, normalize
+from mesh.sphere import arc_length, dot, normalize
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -70,7 +72,7 @@ def triangle_quality(mesh: VoronoiMesh) -> Array:
     return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c)
 
 
-def obtuse_triangles(mesh: VoronoiMesh) -> Array:
+def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
     """Whether each Delaunay triangle (n_vertices,) is obtuse, so that its circumcentre lies outside."""
     squares = np.sort(edge_chords(mesh)[mesh.edges_on_vertex] ** 2, axis=1)
     return squares[:, 2] > squares[:, 0] + squares[:, 1]

@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from mesh.arrays import Array, Index, sum_by_index
 from mesh.delaunay import delaunay, half_edge_twins, is_delaunay
 from mesh.errors import MeshError
-from mesh.sphere import Array, arc_length, circumcenter, dot, normalize, triangle_area
+from mesh.sphere import arc_length, circumcenter, dot, normalize, triangle_area
 
 LBFGS_PAIRS = 7
 MAXIMUM_HALVINGS = 20
@@ -40,8 +40,8 @@ class Tessellation:
     """Generators with their triangulation and the integrals over their Voronoi cells, unit sphere and density."""
 
     points: Array
-    triangles: NDArray[np.int32]
-    twins: NDArray[np.int64]
+    triangles: Index
+    twins: Index
     mass: Array
     moment: Array
     energy: float
@@ -63,7 +63,7 @@ class ScvtResult:
     """Converged generators (n_cells, 3), their Delaunay triangles and the convergence history."""
 
     points: Array
-    triangles: NDArray[np.int32]
+    triangles: Index
     history: History
 
 
@@ -96,7 +96,7 @@ def tessellate(points: Array, previous: Tessellation | None = None) -> Tessellat
     return Tessellation(points, triangles, twins, mass, moment, energy)
 
 
-def mass_and_moment(points: Array, triangles: NDArray[np.int32], twins: NDArray[np.int64]) -> tuple[Array, Array]:
+def mass_and_moment(points: Array, triangles: Index, twins: Index) -> tuple[Array, Array]:
     """Area (n_cells,) and integral of position (n_cells, 3) of every Voronoi cell.
 
     The moment of a spherical polygon is exactly half the sum over its sides of arc length times the inward unit
@@ -111,11 +111,11 @@ def mass_and_moment(points: Array, triangles: NDArray[np.int32], twins: NDArray[
     arc = 0.5 * arc_length(left, right) / np.sqrt(dot(difference, difference))
     area_first = triangle_area(points[first], right, left)
     area_second = triangle_area(points[second], left, right)
-    mass = np.bincount(first, area_first, n_cells) + np.bincount(second, area_second, n_cells)
+    mass = sum_by_index(first, area_first, n_cells) + sum_by_index(second, area_second, n_cells)
     moment = np.empty((n_cells, 3))
     for axis in range(3):
         part = arc * difference[:, axis]
-        moment[:, axis] = np.bincount(first, part, n_cells) - np.bincount(second, part, n_cells)
+        moment[:, axis] = sum_by_index(first, part, n_cells) - sum_by_index(second, part, n_cells)
     return mass, moment
 
 

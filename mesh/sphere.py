@@ -5,9 +5,8 @@ differences of nearby points, so that their relative error does not grow as mesh
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from mesh.arrays import Array
 
 
 def dot(a: Array, b: Array) -> Array:

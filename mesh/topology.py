@@ -3,14 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from mesh.arrays import Index
 from mesh.delaunay import half_edge_twins
 from mesh.errors import MeshError
-from mesh.voronoi_mesh import Index, Topology
+from mesh.voronoi_mesh import Topology
 
 FILL = -1
 
 
-def build_topology(triangles: NDArray[np.int32], n_cells: int) -> Topology:
+def build_topology(triangles: Index, n_cells: int) -> Topology:
     """Connectivity of the Voronoi mesh that is dual to counter-clockwise `triangles` (n_vertices, 3).
 
     Vertices and edges are numbered after their lowest cells, whatever the order of the triangles, so the result
@@ -51,7 +52,7 @@ def _index(array: NDArray) -> Index:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
-def _in_canonical_order(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
+def _in_canonical_order(triangles: Index) -> Index:
     """Triangles turned so that the lowest corner comes first, and sorted."""
     lowest = np.argmin(triangles, axis=1)
     corners = (lowest[:, None] + np.arange(3)) % 3
@@ -59,7 +60,7 @@ def _in_canonical_order(triangles: NDArray[np.int32]) -> NDArray[np.int64]:
     return turned[np.lexsort(turned.T[::-1])]
 
 
-def _number_edges(triangles: NDArray[np.int64], twins: NDArray[np.int64]) -> tuple[NDArray, NDArray]:
+def _number_edges(triangles: Index, twins: Index) -> tuple[NDArray, NDArray]:
     """Edge number of every half-edge, and of every edge its half-edge from the lower to the higher cell."""
     start = triangles.ravel()
     end = start[twins]

@@ -7,10 +7,8 @@ dimensions, units and meaning. In memory, indices count from 0 and -1 fills what
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
-Index = NDArray[np.int32]
+from mesh.arrays import Array, Index
 
 
 @dataclass(frozen=True, eq=False)

@@ -3,8 +3,8 @@
 import numba
 import numpy as np
 
-from mesh.sphere import Array
-from mesh.voronoi_mesh import Index, Topology
+from mesh.arrays import Array, Index
+from mesh.voronoi_mesh import Topology
 
 
 def tangential_weights(topology: Topology, kites: Array, area_cell: Array, dc_edge: Array, dv_edge: Array) -> Array:

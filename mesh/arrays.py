@@ -1,0 +1,12 @@
+"""Array types, and the one sum that scatters: values gathered to the entities that an index names."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Index = NDArray[np.integer]
+
+
+def sum_by_index(index: Index, values: Array, size: int) -> Array:
+    """Sum `values` to the entities `index` (same shape) of which there are `size`; result (size,)."""
+    return np.bincount(index.ravel(), values.ravel(), size).astype(np.float64, copy=False)

@@ -1,0 +1,1 @@
+"""Norms, figures and reports made from runs and meshes."""

@@ -1,0 +1,94 @@
+"""Global integrals that the continuous equations conserve, and their changes in the course of a run."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array
+from swe.model import ShallowWaterModel
+from swe.state import State
+
+
+@dataclass(frozen=True)
+class Invariants:
+    """Mass (m3), energies (m5/s2), potential enstrophy (m/s2) and absolute vorticity (m2/s), per unit density.
+
+    `available_potential_energy` counts from the state of rest with the same mass and a level surface.
+    `planetary_vorticity_magnitude` is the integral of |f|, the yardstick for changes of absolute vorticity.
+    """
+
+    mass: float
+    kinetic_energy: float
+    potential_energy: float
+    available_potential_energy: float
+    potential_enstrophy: float
+    absolute_vorticity: float
+    planetary_vorticity_magnitude: float
+
+    @property
+    def total_energy(self) -> float:
+        """Kinetic and potential energy, m5/s2."""
+        return self.kinetic_energy + self.potential_energy
+
+    @property
+    def available_energy(self) -> float:
+        """Kinetic and available potential energy, m5/s2."""
+        return self.kinetic_energy + self.available_potential_energy
+
+
+def integral(values: Array) -> float:
+    """Exactly rounded sum, the same in any order."""
+    return math.fsum(values)
+
+
+def measure_invariants(model: ShallowWaterModel, state: State) -> Invariants:
+    """The invariants of `state` on the mesh of `model`.
+
+    Kinetic energy is the sum of A_i h_i K_i, potential energy that of g A_i h_i (h_i/2 + b_i), potential enstrophy
+    that of A_v h_v q_v^2/2, absolute vorticity that of A_v (f_v + zeta_v): Ringler et al. (2010), section 3.
+    """
+    mesh, diagnosis = model.mesh, model.diagnose(state)
+    h, b, g = state.thickness, model.topography, model.gravity
+    volume = mesh.area_cell * h
+    mass = integral(volume)
+    level = integral(mesh.area_cell * (h + b)) / integral(mesh.area_cell)
+    absolute_vorticity = model.coriolis + diagnosis.relative_vorticity
+    return Invariants(
+        mass=mass,
+        kinetic_energy=integral(volume * diagnosis.kinetic_energy),
+        potential_energy=g * integral(volume * (0.5 * h + b)),
+        available_potential_energy=0.5 * g * integral(mesh.area_cell * (h + b - level) ** 2),
+        potential_enstrophy=0.5 * integral(mesh.area_triangle * absolute_vorticity * diagnosis.potential_vorticity),
+        absolute_vorticity=integral(mesh.area_triangle * absolute_vorticity),
+        planetary_vorticity_magnitude=integral(mesh.area_triangle * np.abs(model.coriolis)),
+    )
+
+
+@dataclass(frozen=True)
+class Changes:
+    """Changes since the start, each relative to a yardstick.
+
+    Mass is measured by the initial mass, total energy by the initial available and, beside it, by the initial total
+    energy, potential enstrophy by its initial value, absolute vorticity by the integral of |f|.
+    """
+
+    mass: float
+    total_energy: float
+    total_energy_of_total: float
+    potential_enstrophy: float
+    absolute_vorticity: float
+
+
+def relative_changes(initial: Invariants, present: Invariants) -> Changes:
+    """Changes from `initial` to `present`; a yardstick of zero (no motion, no rotation) is replaced by one."""
+    energy = (present.kinetic_energy - initial.kinetic_energy) + (present.potential_energy - initial.potential_energy)
+    return Changes(
+        mass=(present.mass - initial.mass) / initial.mass,
+        total_energy=energy / (initial.available_energy or 1.0),
+        total_energy_of_total=energy / initial.total_energy,
+        potential_enstrophy=(present.potential_enstrophy - initial.potential_enstrophy)
+        / (initial.potential_enstrophy or 1.0),
+        absolute_vorticity=(present.absolute_vorticity - initial.absolute_vorticity)
+        / (initial.planetary_vorticity_magnitude or 1.0),
+    )

@@ -1,0 +1,153 @@
+"""The equations on one mesh: everything that the tendency and the diagnostics need, apart from any clock."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.voronoi_mesh import VoronoiMesh
+from swe import kernels
+from swe.errors import SetupError
+from swe.state import State
+
+
+@dataclass(frozen=True, eq=False)
+class Diagnosis:
+    """Fields that follow from a state: vorticities at vertices, 1/s and 1/(m s), kinetic energy at cells, m2/s2."""
+
+    relative_vorticity: Array
+    potential_vorticity: Array
+    kinetic_energy: Array
+
+
+class ShallowWaterModel:
+    """The rotating shallow-water equations over topography on a mesh in metres.
+
+    Parameters
+    ----------
+    mesh
+        Voronoi mesh, scaled to the radius of the sphere (`VoronoiMesh.scaled`).
+    topography
+        Height of the bottom at cells (n_cells,), m.
+    coriolis
+        Coriolis parameter at vertices (n_vertices,), 1/s.
+    gravity
+        Acceleration of gravity, m/s2.
+
+    Raises
+    ------
+    SetupError
+        Where a field has the wrong shape or is not finite.
+    """
+
+    def __init__(self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float) -> None:
+        _check_field("topography", topography, mesh.n_cells)
+        _check_field("coriolis", coriolis, mesh.n_vertices)
+        self.mesh = mesh
+        self.topography = topography
+        self.coriolis = coriolis
+        self.gravity = gravity
+        self._sign_on_cell = kernels.edge_signs_on_cell(mesh)
+        self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
+        self._thickness_flux = np.empty(mesh.n_edges)
+        self._vorticity = np.empty(mesh.n_vertices)
+        self._potential_vorticity = np.empty(mesh.n_vertices)
+        self._potential_vorticity_edge = np.empty(mesh.n_edges)
+        self._kinetic_energy = np.empty(mesh.n_cells)
+
+    def tendency(self, state: State, result: State) -> None:
+        """Write the time derivative of `state` into `result`; allocates nothing."""
+        mesh, h, u = self.mesh, state.thickness, state.normal_velocity
+        F, q_edge, K = self._thickness_flux, self._potential_vorticity_edge, self._kinetic_energy
+        kernels.thickness_flux(h, u, mesh.cells_on_edge, F)
+        self._update_vorticity(state)
+        kernels.mean_of_vertices(self._potential_vorticity, mesh.vertices_on_edge, q_edge)
+        self._update_kinetic_energy(state)
+        kernels.thickness_tendency(
+            F,
+            mesh.n_edges_on_cell,
+            mesh.edges_on_cell,
+            self._sign_on_cell,
+            mesh.dv_edge,
+            mesh.area_cell,
+            result.thickness,
+        )
+        kernels.velocity_tendency(
+            h,
+            self.topography,
+            K,
+            F,
+            q_edge,
+            self.gravity,
+            mesh.cells_on_edge,
+            mesh.n_edges_on_edge,
+            mesh.edges_on_edge,
+            mesh.weights_on_edge,
+            mesh.dc_edge,
+            result.normal_velocity,
+        )
+
+    def diagnose(self, state: State) -> Diagnosis:
+        """Fields that follow from `state`, as new arrays."""
+        self._update_vorticity(state)
+        self._update_kinetic_energy(state)
+        return Diagnosis(
+            relative_vorticity=self._vorticity.copy(),
+            potential_vorticity=self._potential_vorticity.copy(),
+            kinetic_energy=self._kinetic_energy.copy(),
+        )
+
+    def gravity_wave_speed(self, state: State) -> float:
+        """Largest speed of gravity waves, sqrt(g h), m/s."""
+        return float(np.sqrt(self.gravity * state.thickness.max()))
+
+    def courant_number(self, state: State, time_step: float) -> float:
+        """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
+
+        Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
+        frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2).
+        """
+        first, second = self.mesh.cells_on_edge.T
+        depth = np.maximum(state.thickness[first], state.thickness[second])
+        speed = np.sqrt(self.gravity * depth) + np.abs(state.normal_velocity)
+        return float(time_step * np.max(speed / self.mesh.dc_edge))
+
+    def _update_vorticity(self, state: State) -> None:
+        mesh = self.mesh
+        kernels.relative_vorticity(
+            state.normal_velocity,
+            mesh.edges_on_vertex,
+            self._sign_on_vertex,
+            mesh.dc_edge,
+            mesh.area_triangle,
+            self._vorticity,
+        )
+        kernels.potential_vorticity(
+            state.thickness,
+            self._vorticity,
+            self.coriolis,
+            mesh.cells_on_vertex,
+            mesh.kite_areas_on_vertex,
+            mesh.area_triangle,
+            self._potential_vorticity,
+        )
+
+    def _update_kinetic_energy(self, state: State) -> None:
+        mesh = self.mesh
+        kernels.kinetic_energy(
+            state.normal_velocity,
+            mesh.n_edges_on_cell,
+            mesh.edges_on_cell,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            mesh.area_cell,
+            self._kinetic_energy,
+        )
+
+
+def _check_field(name: str, values: Array, size: int) -> None:
+    if values.shape != (size,):
+        raise SetupError(f"{name} has shape {values.shape}, but the mesh needs ({size},)")
+    wrong = np.flatnonzero(~np.isfinite(values))
+    if len(wrong):
+        raise SetupError(f"{name} is {values[wrong[0]]} at entity {wrong[0]} (counted from 0); it must be finite")

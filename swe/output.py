@@ -1,0 +1,184 @@
+"""The files of a run directory: the mesh, snapshots, diagnostics and the record of the run (DESIGN, section 5)."""
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.conventions import BY_NAME
+from mesh.files import written_aside
+from mesh.io import mesh_attributes, write_mesh_variables
+from mesh.operators import velocity_at_cells
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.invariants import Changes, Invariants
+from swe.model import ShallowWaterModel
+from swe.state import State
+
+HISTORY_FILE = "history.nc"
+DIAGNOSTICS_FILE = "diagnostics.nc"
+MESH_FILE = "mesh.nc"
+RECORD_FILE = "run.json"
+FIGURES_FOLDER = "figures"
+
+GEOMETRY = frozenset(BY_NAME) - {
+    *("n_edges_on_edge", "edges_on_edge", "weights_on_edge", "kite_areas_on_vertex"),
+    *("angle_edge", "mesh_density", "boundary_vertex"),
+}
+"""Mesh arrays repeated in the history file, so that it can be plotted and integrated by itself."""
+
+FIELDS = {
+    "thickness": ("nCells", "m", "thickness of the fluid"),
+    "surface_height": ("nCells", "m", "height of the free surface, thickness plus topography"),
+    "kinetic_energy": ("nCells", "m2 s-2", "kinetic energy per unit mass"),
+    "velocity_zonal": ("nCells", "m s-1", "eastward velocity, least squares over the edges of the cell"),
+    "velocity_meridional": ("nCells", "m s-1", "northward velocity, least squares over the edges of the cell"),
+    "normal_velocity": ("nEdges", "m s-1", "velocity along the normal, from cellsOnEdge 1 to 2"),
+    "relative_vorticity": ("nVertices", "s-1", "relative vorticity"),
+    "potential_vorticity": ("nVertices", "m-1 s-1", "potential vorticity (f + zeta)/h"),
+}
+"""Snapshots: name -> place, units, meaning."""
+
+SERIES = {
+    "mass": ("m3", "integral of thickness"),
+    "mass_change": ("1", "change of mass relative to the initial mass"),
+    "total_energy": ("m5 s-2", "kinetic plus potential energy"),
+    "total_energy_change": ("1", "change of total energy relative to the initial available energy"),
+    "total_energy_change_of_total": ("1", "change of total energy relative to the initial total energy"),
+    "kinetic_energy": ("m5 s-2", "kinetic energy"),
+    "available_potential_energy": ("m5 s-2", "potential energy above that of a level surface"),
+    "potential_enstrophy": ("m s-2", "integral of h q2 / 2"),
+    "potential_enstrophy_change": ("1", "change of potential enstrophy relative to its initial value"),
+    "absolute_vorticity": ("m2 s-1", "integral of f + zeta"),
+    "absolute_vorticity_change": ("1", "change of absolute vorticity relative to the integral of |f|"),
+    "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges"),
+    "max_speed": ("m s-1", "largest speed sqrt(2 K) over all cells"),
+}
+"""Diagnostics: name -> units, meaning."""
+
+PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
+
+
+def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
+    """Make a history file without snapshots."""
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        file.setncatts(mesh_attributes(mesh, "snapshots of a shallow-water run"))
+        write_mesh_variables(file, mesh, GEOMETRY)
+        _define_time(file)
+        _define(file, "topography", ("nCells",), "m", "height of the bottom")
+        file["topography"][:] = topography
+        for name, (place, units, long_name) in FIELDS.items():
+            _define(file, name, ("Time", place), units, long_name)
+
+
+def create_diagnostics(path: Path) -> None:
+    """Make a diagnostics file without rows."""
+    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+        _define_time(file)
+        for name, (units, long_name) in SERIES.items():
+            _define(file, name, ("Time",), units, long_name)
+
+
+class _TimeFile:
+    """A file that grows along time, complete after every row."""
+
+    def __init__(self, path: Path) -> None:
+        self._file = netCDF4.Dataset(path, "r+")
+
+    def _append(self, time: float, values: Mapping[str, Array | float]) -> None:
+        row = len(self._file.dimensions["Time"])
+        for name, value in values.items():
+            self._file[name][row] = value
+        self._file["time"][row] = time
+        self._file.sync()
+
+    def close(self) -> None:
+        """Close the file."""
+        self._file.close()
+
+
+class HistoryFile(_TimeFile):
+    """Snapshots, appended one by one."""
+
+    def append(self, time: float, model: ShallowWaterModel, state: State) -> None:
+        """Write the snapshot of `state` at `time`, seconds since the start."""
+        zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
+        values = {
+            **asdict(model.diagnose(state)),
+            "thickness": state.thickness,
+            "surface_height": state.thickness + model.topography,
+            "normal_velocity": state.normal_velocity,
+            "velocity_zonal": zonal,
+            "velocity_meridional": meridional,
+        }
+        self._append(time, values)
+
+
+class DiagnosticsFile(_TimeFile):
+    """Time series of invariants and of what limits the time step."""
+
+    def append(
+        self, time: float, invariants: Invariants, changes: Changes, courant_number: float, max_speed: float
+    ) -> None:
+        """Write one row at `time`, seconds since the start."""
+        values = {
+            "mass": invariants.mass,
+            "mass_change": changes.mass,
+            "total_energy": invariants.total_energy,
+            "total_energy_change": changes.total_energy,
+            "total_energy_change_of_total": changes.total_energy_of_total,
+            "kinetic_energy": invariants.kinetic_energy,
+            "available_potential_energy": invariants.available_potential_energy,
+            "potential_enstrophy": invariants.potential_enstrophy,
+            "potential_enstrophy_change": changes.potential_enstrophy,
+            "absolute_vorticity": invariants.absolute_vorticity,
+            "absolute_vorticity_change": changes.absolute_vorticity,
+            "courant_number": courant_number,
+            "max_speed": max_speed,
+        }
+        self._append(time, values)
+
+
+def write_record(directory: Path, record: dict[str, object]) -> None:
+    """Write `run.json`, replacing an earlier one as a whole."""
+    with written_aside(directory / RECORD_FILE) as aside:
+        aside.write_text(json.dumps(record, indent=2) + "\n")
+
+
+def package_versions() -> dict[str, str]:
+    """Versions of this package and of those that results depend on."""
+    versions = {}
+    for name in PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "not installed"
+    return versions
+
+
+def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
+    variable = file.createVariable(name, "f8", dimensions)
+    variable.setncatts({"units": units, "long_name": long_name})
+
+
+def _define_time(file: netCDF4.Dataset) -> None:
+    file.createDimension("Time", None)
+    time = file.createVariable("time", "f8", ("Time",))
+    time.setncatts(
+        {
+            "units": "seconds since 2000-01-01 00:00:00",
+            "long_name": "time since the start of the run",
+            "standard_name": "time",
+            "calendar": "proleptic_gregorian",
+        }
+    )
+
+
+def read_series(path: Path) -> dict[str, Array]:
+    """All series of a diagnostics file by name, `time` among them."""
+    with netCDF4.Dataset(path) as file:
+        return {name: np.asarray(file[name][:]) for name in ("time", *SERIES)}

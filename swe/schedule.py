@@ -1,0 +1,40 @@
+"""When things happen in a run: at whole multiples of an interval, and at the end."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+ROUNDING = 1e-9
+"""A step that would stop short of an event by less than this part of itself lands on the event."""
+
+
+@dataclass(frozen=True)
+class Schedule:
+    """Whole multiples of `interval` seconds up to and including `end` seconds, which is always an event."""
+
+    interval: float
+    end: float
+
+    def next_after(self, time: float) -> float:
+        """The first event later than `time`, seconds; infinity after the end."""
+        if time >= self.end:
+            return float("inf")
+        count = np.floor(time / self.interval * (1.0 + ROUNDING)) + 1.0
+        return float(min(count * self.interval, self.end))
+
+    def is_due(self, time: float) -> bool:
+        """Whether `time` is an event: the start, a multiple of the interval, or the end."""
+        return time == 0.0 or time == self.end or time == np.round(time / self.interval) * self.interval
+
+
+def step_towards(time: float, event: float, time_step: float) -> tuple[float, float]:
+    """Length of the next step and the time after it: `time_step`, or less to land exactly on `event`."""
+    remaining = event - time
+    if remaining <= time_step * (1.0 + ROUNDING):
+        return remaining, event
+    return time_step, time + time_step
+
+
+def dividing_step(limit: float, interval: float) -> float:
+    """The largest time step not above `limit` that divides `interval`, seconds."""
+    return interval / np.ceil(interval / limit * (1.0 - ROUNDING))

@@ -1,0 +1,288 @@
+"""The run loop: clock, schedules, output, progress and the watch over the state."""
+
+import os
+import time as clock
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.io import mesh_hash, write_mesh
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import RunError, SetupError
+from swe.invariants import Invariants, measure_invariants, relative_changes
+from swe.model import ShallowWaterModel
+from swe.output import (
+    DIAGNOSTICS_FILE,
+    HISTORY_FILE,
+    MESH_FILE,
+    RECORD_FILE,
+    DiagnosticsFile,
+    HistoryFile,
+    create_diagnostics,
+    create_history,
+    package_versions,
+    write_record,
+)
+from swe.progress import ProgressBar
+from swe.schedule import Schedule, dividing_step, step_towards
+from swe.state import State
+from swe.time_stepping import RungeKutta
+
+DEFAULT_COURANT_NUMBER = 0.8
+"""Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+
+DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
+DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
+
+
+class Case(Protocol):
+    """What a simulation asks of a test case: see `cases.base.Case`."""
+
+    @property
+    def name(self) -> str:
+        """Name by which the case is run."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the sphere, m."""
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity, m/s2."""
+
+    def initial_state(self, mesh: VoronoiMesh) -> State:
+        """State at time zero."""
+
+    def topography_on(self, mesh: VoronoiMesh) -> Array:
+        """Height of the bottom at cells, m."""
+
+    def coriolis_on(self, mesh: VoronoiMesh) -> Array:
+        """Coriolis parameter at vertices, 1/s."""
+
+    def parameters(self) -> dict[str, float]:
+        """Parameters of the case by name, for the record of the run."""
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """What determines a run besides mesh and case; times in seconds."""
+
+    time_step: float
+    snapshot_interval: float
+    diagnostics_interval: float
+
+
+class Simulation:
+    """One run of a case on a mesh.
+
+    Parameters
+    ----------
+    mesh
+        Any Voronoi mesh; it is scaled to the radius of the case.
+    case
+        A test case, such as those of `cases`.
+    output
+        Run directory to create; nothing is written if None. Refused where it holds a run already, unless
+        `overwrite`.
+    time_step
+        Seconds; by default the largest up to `DEFAULT_COURANT_NUMBER` that divides the shorter output interval.
+        Steps are shortened where they would pass an output time.
+    snapshot_interval, diagnostics_interval
+        Seconds between snapshots and between rows of diagnostics.
+
+    Raises
+    ------
+    SetupError
+        Where an option is out of range, the initial thickness is not positive, or the directory cannot be used.
+    """
+
+    def __init__(
+        self,
+        mesh: VoronoiMesh,
+        case: Case,
+        output: str | os.PathLike[str] | None = None,
+        *,
+        time_step: float | None = None,
+        snapshot_interval: float = DEFAULT_SNAPSHOT_INTERVAL,
+        diagnostics_interval: float = DEFAULT_DIAGNOSTICS_INTERVAL,
+        overwrite: bool = False,
+    ) -> None:
+        _require_positive("the snapshot interval", snapshot_interval)
+        _require_positive("the diagnostics interval", diagnostics_interval)
+        self.case = case
+        self.mesh = mesh.scaled(case.radius)
+        self.model = ShallowWaterModel(
+            self.mesh, case.topography_on(self.mesh), case.coriolis_on(self.mesh), case.gravity
+        )
+        self.state = case.initial_state(self.mesh)
+        self.time = 0.0
+        self.steps = 0
+        problem = self._problem_with_state()
+        if problem:
+            raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
+        if time_step is None:
+            limit = DEFAULT_COURANT_NUMBER / self.model.courant_number(self.state, 1.0)
+            time_step = dividing_step(limit, min(snapshot_interval, diagnostics_interval))
+        _require_positive("the time step", time_step)
+        self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval)
+        self.initial_courant_number = self.model.courant_number(self.state, time_step)
+        self.initial_invariants = measure_invariants(self.model, self.state)
+        self._stepper = RungeKutta(self.model.tendency, self.state)
+        self._directory = None if output is None else _prepare_directory(Path(output), overwrite)
+
+    @property
+    def invariants(self) -> Invariants:
+        """Invariants of the present state."""
+        return measure_invariants(self.model, self.state)
+
+    def run(self, days: float, progress: bool = True) -> None:
+        """Integrate to `days` after the start, writing output on the way.
+
+        Raises `SetupError` where `days` is not later than now, `RunError` where the state ceases to be finite
+        or the thickness to be positive; what was written before stays.
+        """
+        end = days * SECONDS_PER_DAY
+        if not (np.isfinite(end) and end > self.time):
+            raise SetupError(
+                f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
+            )
+        snapshots = Schedule(self.configuration.snapshot_interval, end)
+        diagnostics = Schedule(self.configuration.diagnostics_interval, end)
+        recorder = _Recorder(self, days)
+        recorder.begin()
+        with ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar:
+            try:
+                while self.time < end:
+                    event = min(snapshots.next_after(self.time), diagnostics.next_after(self.time))
+                    self._advance_to(event, bar)
+                    recorder.record(snapshots.is_due(self.time), diagnostics.is_due(self.time))
+            except BaseException as error:
+                recorder.end("interrupted" if isinstance(error, KeyboardInterrupt) else "failed", str(error))
+                raise
+        recorder.end("completed")
+
+    def _advance_to(self, event: float, bar: ProgressBar) -> None:
+        """Step until `event`, seconds, is reached exactly."""
+        while self.time < event:
+            step, following = step_towards(self.time, event, self.configuration.time_step)
+            self._stepper.step(self.state, step)
+            self.time = following
+            self.steps += 1
+            problem = self._problem_with_state()
+            if problem:
+                raise RunError(
+                    f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {problem}; the Courant number "
+                    f"was {self.initial_courant_number:.2f} at the start: where that is above "
+                    f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
+                )
+            bar.update(self.time / SECONDS_PER_DAY)
+        bar.show_courant_number(self.model.courant_number(self.state, self.configuration.time_step))
+
+    def _problem_with_state(self) -> str | None:
+        """What is wrong with the state, as the end of a sentence; None if nothing is."""
+        h = self.state.thickness
+        # A velocity that is not finite makes the thickness so within one step.
+        if h.min() > 0.0 and np.isfinite(h.max()):
+            return None
+        cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
+        longitude, latitude = np.degrees(self.mesh.lon_cell[cell]), np.degrees(self.mesh.lat_cell[cell])
+        return (
+            f"thickness is {h[cell]:g} m in cell {cell} (counted from 0) at longitude {longitude:.1f} and "
+            f"latitude {latitude:.1f} degrees"
+        )
+
+
+class _Recorder:
+    """Writes what a run leaves in its directory; does nothing for a run without one."""
+
+    def __init__(self, simulation: Simulation, days: float) -> None:
+        self.simulation = simulation
+        self.directory = simulation._directory
+        self.days = days
+        self.started = clock.perf_counter()
+        self.history: HistoryFile | None = None
+        self.diagnostics: DiagnosticsFile | None = None
+
+    def begin(self) -> None:
+        """Create the files and write the state at the start; open them again where the run goes on."""
+        if self.directory is None:
+            return
+        simulation = self.simulation
+        self._write_status("running")
+        starting = simulation.steps == 0
+        if starting:
+            write_mesh(simulation.mesh, self.directory / MESH_FILE, f"mesh of a run of {simulation.case.name}")
+            create_history(self.directory / HISTORY_FILE, simulation.mesh, simulation.model.topography)
+            create_diagnostics(self.directory / DIAGNOSTICS_FILE)
+        self.history = HistoryFile(self.directory / HISTORY_FILE)
+        self.diagnostics = DiagnosticsFile(self.directory / DIAGNOSTICS_FILE)
+        if starting:
+            self.record(True, True)
+
+    def record(self, snapshot: bool, diagnostics: bool) -> None:
+        """Write the present state to the files that are due."""
+        simulation = self.simulation
+        if self.history is not None and snapshot:
+            self.history.append(simulation.time, simulation.model, simulation.state)
+        if self.diagnostics is not None and diagnostics:
+            invariants = simulation.invariants
+            kinetic_energy = simulation.model.diagnose(simulation.state).kinetic_energy
+            self.diagnostics.append(
+                simulation.time,
+                invariants,
+                relative_changes(simulation.initial_invariants, invariants),
+                simulation.model.courant_number(simulation.state, simulation.configuration.time_step),
+                float(np.sqrt(2.0 * kinetic_energy.max())),
+            )
+
+    def end(self, status: str, reason: str = "") -> None:
+        """Close the files and write the final status."""
+        for file in (self.history, self.diagnostics):
+            if file is not None:
+                file.close()
+        if self.directory is not None:
+            self._write_status(status, reason)
+
+    def _write_status(self, status: str, reason: str = "") -> None:
+        simulation = self.simulation
+        assert self.directory is not None
+        write_record(
+            self.directory,
+            {
+                "status": status,
+                "reason": reason,
+                "case": simulation.case.name,
+                "parameters": simulation.case.parameters(),
+                "configuration": asdict(simulation.configuration),
+                "days": self.days,
+                "day_reached": simulation.time / SECONDS_PER_DAY,
+                "steps": simulation.steps,
+                "wall_seconds": clock.perf_counter() - self.started,
+                "threads": numba.get_num_threads(),
+                "cells": simulation.mesh.n_cells,
+                "mesh_hash": mesh_hash(simulation.mesh),
+                "versions": package_versions(),
+            },
+        )
+
+
+def _require_positive(what: str, value: float) -> None:
+    if not (np.isfinite(value) and value > 0.0):
+        raise SetupError(f"{what} is {value:g} s; it must be positive")
+
+
+def _prepare_directory(directory: Path, overwrite: bool) -> Path:
+    """Make the run directory; raise `SetupError` where it holds a run already or cannot be made."""
+    if (directory / RECORD_FILE).exists() and not overwrite:
+        raise SetupError(f"{directory} holds a run already; choose another directory or overwrite it")
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        (directory / RECORD_FILE).unlink(missing_ok=True)
+    except OSError as error:
+        raise SetupError(f"{directory} cannot be used as a run directory: {error.strerror or error}") from error
+    return directory

@@ -1,0 +1,27 @@
+"""The prognostic fields of the shallow-water equations, and their tendencies."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array
+
+
+@dataclass(frozen=True, eq=False)
+class State:
+    """`thickness` at cells (n_cells,), m, and `normal_velocity` at edges (n_edges,), m/s.
+
+    The normal velocity is positive from `cells_on_edge[e, 0]` to `[e, 1]`. A tendency has the same shape, per
+    second.
+    """
+
+    thickness: Array
+    normal_velocity: Array
+
+    def copy(self) -> "State":
+        """An independent copy."""
+        return State(self.thickness.copy(), self.normal_velocity.copy())
+
+    def empty_like(self) -> "State":
+        """Uninitialised arrays of the same shapes."""
+        return State(np.empty_like(self.thickness), np.empty_like(self.normal_velocity))

@@ -1,0 +1,168 @@
+"""The `trisk` command; packages are imported when a command needs them, so that help is quick."""
+
+import json
+import shlex
+import sys
+import warnings
+from pathlib import Path
+from typing import Annotated, TextIO
+
+import typer
+
+app = typer.Typer(
+    help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
+)
+
+RUN_FAILED, BAD_INPUT = 1, 2
+
+Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
+Recompute = Annotated[
+    bool,
+    typer.Option("--recompute-metrics", help="Rebuild lengths, areas and weights of the file from its generators."),
+]
+
+
+@app.command()
+def mesh(
+    cells: Annotated[int, typer.Option("--cells", help="Number of cells; 10*4^k+2 gives an icosahedral mesh.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="MPAS mesh file to write.")],
+    start: Annotated[
+        str | None, typer.Option("--start", help="icosahedral or fibonacci; by default the first where it exists.")
+    ] = None,
+    method: Annotated[str, typer.Option("--method", help="lbfgs or lloyd.")] = "lbfgs",
+    tolerance: Annotated[
+        float, typer.Option("--tolerance", help="Largest distance to the centroids, in mean spacings.")
+    ] = 1e-8,
+    max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = 10_000,
+    quiet: Quiet = False,
+) -> None:
+    """Generate a spherical centroidal Voronoi mesh."""
+    from mesh import scvt_mesh, write_mesh
+    from trisk.report import convergence_bar, print_quality
+
+    with convergence_bar(tolerance, not quiet) as show:
+        result = scvt_mesh(cells, start, method, tolerance, max_iterations, callback=show)
+    write_mesh(result, output, history=_command_line())
+    if not quiet:
+        print_quality(result, str(output))
+
+
+@app.command()
+def quality(
+    file: Annotated[Path, typer.Argument(help="MPAS mesh file.")],
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    recompute_metrics: Recompute = False,
+) -> None:
+    """Validate a mesh file and measure its quality."""
+    from dataclasses import asdict
+
+    from mesh import mesh_quality, read_mesh
+    from trisk.report import print_quality
+
+    read = read_mesh(file, recompute_metrics)
+    if as_json:
+        typer.echo(json.dumps(asdict(mesh_quality(read))))
+    else:
+        print_quality(read, str(file))
+
+
+@app.command()
+def run(
+    case: Annotated[str, typer.Argument(help="Name of the test case: williamson2 or williamson5.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Run directory to create.")],
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
+    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
+    days: Annotated[
+        float | None, typer.Option("--days", help="Simulated days; by default those that the paper recommends.")
+    ] = None,
+    time_step: Annotated[
+        float | None, typer.Option("--dt", help="Time step in seconds; by default from the mesh and the wave speed.")
+    ] = None,
+    snapshot_hours: Annotated[float, typer.Option("--snapshot-hours", help="Hours between snapshots.")] = 24.0,
+    diagnostics_hours: Annotated[float, typer.Option("--diagnostics-hours", help="Hours between diagnostics.")] = 6.0,
+    force: Annotated[bool, typer.Option("--force", help="Replace a run that the directory holds.")] = False,
+    recompute_metrics: Recompute = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a test case and write snapshots and diagnostics."""
+    from cases import find_case
+    from mesh import read_mesh, scvt_mesh
+    from swe import Simulation
+    from trisk.report import convergence_bar, print_run
+
+    chosen = find_case(case)
+    if (mesh_file is None) == (cells is None):
+        raise typer.BadParameter("give either --mesh FILE or --cells N")
+    if mesh_file is not None:
+        used = read_mesh(mesh_file, recompute_metrics)
+    else:
+        assert cells is not None
+        with convergence_bar(1e-8, not quiet) as show:
+            used = scvt_mesh(cells, callback=show)
+    simulation = Simulation(
+        used,
+        chosen,
+        output,
+        time_step=time_step,
+        snapshot_interval=3600.0 * snapshot_hours,
+        diagnostics_interval=3600.0 * diagnostics_hours,
+        overwrite=force,
+    )
+    simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
+    if not quiet:
+        print_run(output)
+
+
+@app.command()
+def plot(
+    run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
+    quiet: Quiet = False,
+) -> None:
+    """Draw maps, the mesh and conservation of a run into its folder of figures."""
+    from postprocess.plots import plot_run
+    from postprocess.runs import read_run
+    from swe.output import FIGURES_FOLDER
+
+    paths = plot_run(read_run(run_directory), run_directory / FIGURES_FOLDER)
+    if not quiet:
+        for path in paths:
+            typer.echo(path)
+
+
+def _command_line() -> str:
+    return shlex.join(["trisk", *sys.argv[1:]])
+
+
+def _show_warning(
+    message: Warning | str, category: type[Warning], *_: object, file: TextIO | None = None, line: str | None = None
+) -> None:
+    typer.echo(f"warning: {message}", err=True)
+
+
+def main() -> None:
+    """Run the command line; exit with 0 when done, 1 where a run failed, 2 on bad input."""
+    warnings.showwarning = _show_warning
+    try:
+        app()
+    except Exception as error:
+        code = _exit_code(error)
+        if code is None:
+            raise
+        typer.echo(f"error: {error}", err=True)
+        sys.exit(code)
+
+
+def _exit_code(error: Exception) -> int | None:
+    """Exit code for a foreseen error; None for a fault of this program."""
+    from mesh import MeshError
+    from swe.errors import RunError, SetupError
+
+    if isinstance(error, MeshError | SetupError):
+        return BAD_INPUT
+    if isinstance(error, RunError | OSError):
+        return RUN_FAILED
+    return None

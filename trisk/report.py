@@ -1,0 +1,85 @@
+"""What commands print: progress of the mesh generation, and tables of results."""
+
+import json
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+from rich.table import Table
+
+from mesh import VoronoiMesh, mesh_quality
+from mesh.scvt import Callback
+from swe.output import DIAGNOSTICS_FILE, RECORD_FILE, read_series
+
+
+@contextmanager
+def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
+    """Give a callback that shows how far the residual has come down, on a logarithmic scale, to `tolerance`."""
+    columns = (
+        TextColumn("mesh: iteration {task.fields[iteration]}"),
+        BarColumn(),
+        TextColumn("residual {task.fields[residual]:.1e} of {task.fields[tolerance]:.0e} spacings"),
+        TimeElapsedColumn(),
+    )
+    first = math.nan
+    with Progress(*columns, console=Console(stderr=True), disable=not visible) as progress:
+        task = progress.add_task("", total=1.0, iteration=0, residual=math.nan, tolerance=tolerance)
+
+        def show(iteration: int, residual: float, energy: float) -> None:
+            nonlocal first
+            first = max(residual, 2.0 * tolerance) if math.isnan(first) else first
+            way = math.log(first / max(residual, 1e-300)) / math.log(first / tolerance)
+            progress.update(task, completed=min(max(way, 0.0), 1.0), iteration=iteration, residual=residual)
+
+        yield show
+
+
+def print_quality(mesh: VoronoiMesh, name: str) -> None:
+    """Print the quality of `mesh` as a table."""
+    measured = mesh_quality(mesh)
+    residual = "not defined" if measured.residual is None else f"{measured.residual:.2e} mean spacings"
+    rows = [
+        ("cells", str(measured.cells)),
+        ("largest / smallest neighbour distance (mu)", f"{measured.mu:.6f}"),
+        ("mean of shortest / longest distance (sigma_avg)", f"{measured.sigma_avg:.6f}"),
+        ("smallest of those (sigma_min)", f"{measured.sigma_min:.6f}"),
+        ("mean triangle quality (q_avg)", f"{measured.q_avg:.6f}"),
+        ("smallest triangle quality (q_min)", f"{measured.q_min:.6f}"),
+        ("distance to the centroids, at most (residual)", residual),
+        ("obtuse triangles", str(measured.obtuse)),
+        ("largest / smallest cell area", f"{measured.area_ratio:.6f}"),
+    ]
+    _print_table(f"Quality of {name}", rows)
+
+
+def print_run(directory: Path) -> None:
+    """Print the summary of a finished run as a table, and where its files are."""
+    record = json.loads((directory / RECORD_FILE).read_text())
+    series = read_series(directory / DIAGNOSTICS_FILE)
+    last = {name: float(values[-1]) for name, values in series.items()}
+    rows = [
+        ("status", record["status"]),
+        ("cells, threads", f"{record['cells']}, {record['threads']}"),
+        ("day reached", f"{record['day_reached']:g}"),
+        ("time step, steps", f"{record['configuration']['time_step']:g} s, {record['steps']}"),
+        ("wall-clock time", f"{record['wall_seconds']:.1f} s"),
+        ("Courant number", f"{last['courant_number']:.2f}"),
+        ("largest speed", f"{last['max_speed']:.2f} m/s"),
+        ("change of mass", f"{last['mass_change']:+.2e}"),
+        ("change of total energy, of the available", f"{last['total_energy_change']:+.2e}"),
+        ("change of total energy, of the total", f"{last['total_energy_change_of_total']:+.2e}"),
+        ("change of potential enstrophy", f"{last['potential_enstrophy_change']:+.2e}"),
+        ("change of absolute vorticity, of |f|", f"{last['absolute_vorticity_change']:+.2e}"),
+        ("files", str(directory)),
+    ]
+    _print_table(f"Run of {record['case']}", rows)
+
+
+def _print_table(title: str, rows: list[tuple[str, str]]) -> None:
+    table = Table(title=title, show_header=False)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)
