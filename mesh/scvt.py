@@ -133,6 +133,8 @@ def optimize(
     """
     if method not in ("lbfgs", "lloyd"):
         raise MeshError(f"there is no optimisation method named '{method}'; choose lbfgs or lloyd")
+    if not tolerance > 0.0:
+        raise MeshError(f"the tolerance is {tolerance:g} mean spacings; it must be positive")
     direction = _LbfgsDirection() if method == "lbfgs" else _lloyd_direction
     present = tessellate(points)
     history, begin = History(), time.perf_counter()

@@ -33,7 +33,7 @@ CENTRAL_LONGITUDE = np.radians(270.0)
 VIEW_LATITUDE = np.radians(40.0)
 SQUARE_METRES_PER_SQUARE_KILOMETRE = 1e6
 DOTS_PER_INCH = 150
-ROUND_OFF_FLOOR = 1e-17
+ROUND_OFF_FLOOR = 1e-20
 """Changes smaller than this are drawn here, for want of a logarithm of zero."""
 
 
@@ -145,20 +145,22 @@ def _latitude_label(degrees: int) -> str:
 def mesh_figure(mesh: VoronoiMesh) -> Figure:
     """The mesh coloured by cell area, and the distributions of sigma over cells and of q over triangles."""
     quality = mesh_quality(mesh)
-    figure = Figure(figsize=(12.0, 4.8), layout="constrained")
-    panels = figure.subplot_mosaic([["map", "sigma"], ["map", "q"]], width_ratios=[1.6, 1.0])
+    figure = Figure(figsize=(12.0, 4.6), layout="constrained")
+    left, right = np.asarray(figure.subfigures(1, 2, width_ratios=[1.6, 1.0]))
+    map_axes = left.subplots()
     area = mesh.area_cell / SQUARE_METRES_PER_SQUARE_KILOMETRE
-    drawn = draw_mollweide(panels["map"], mesh, area, {"cmap": "viridis"})
-    figure.colorbar(drawn, ax=panels["map"], location="bottom", shrink=0.8, label="area of cells (km²)")
-    for name, values, label, count in (
-        ("sigma", neighbour_distance_ratio(mesh), "σ, shortest over longest neighbour distance", "cells"),
-        ("q", triangle_quality(mesh), "q of Delaunay triangles, 1 if equilateral", "triangles"),
-    ):
-        panels[name].hist(values, bins=60, color="tab:blue")
-        panels[name].set_yscale("log")
-        panels[name].set_xlabel(label)
-        panels[name].set_ylabel(f"number of {count}")
-        panels[name].set_title(f"mean {values.mean():.4f}, smallest {values.min():.4f}", fontsize=9)
+    drawn = draw_mollweide(map_axes, mesh, area, {"cmap": "viridis"})
+    left.colorbar(drawn, ax=map_axes, location="bottom", shrink=0.8, label="area of cells (km²)")
+    distributions = (
+        (neighbour_distance_ratio(mesh), "σ, shortest over longest neighbour distance", "cells"),
+        (triangle_quality(mesh), "q of Delaunay triangles, 1 if equilateral", "triangles"),
+    )
+    for axes, (values, label, count) in zip(right.subplots(2, 1), distributions, strict=True):
+        axes.hist(values, bins=60, color="tab:blue")
+        axes.set_yscale("log")
+        axes.set_xlabel(label)
+        axes.set_ylabel(f"number of {count}")
+        axes.set_title(f"mean {values.mean():.4f}, smallest {values.min():.4f}", fontsize=9)
     figure.suptitle(f"Mesh of {mesh.n_cells} cells: μ = {quality.mu:.4f}, area ratio {quality.area_ratio:.3f}")
     return figure
 
@@ -168,14 +170,14 @@ def conservation_figure(series: dict[str, Array], title: str) -> Figure:
     figure = Figure(figsize=(9.0, 5.0), layout="constrained")
     axes = figure.subplots()
     days = series["time"] / 86400.0
-    for name, label in (
-        ("potential_enstrophy_change", "potential enstrophy"),
-        ("total_energy_change", "total energy, of the available energy"),
-        ("total_energy_change_of_total", "total energy, of the total energy"),
-        ("mass_change", "mass"),
-        ("absolute_vorticity_change", "absolute vorticity, of the integral of |f|"),
+    for name, label, style in (
+        ("potential_enstrophy_change", "potential enstrophy", "-"),
+        ("total_energy_change", "total energy, of the available energy", "-"),
+        ("total_energy_change_of_total", "total energy, of the total energy", "--"),
+        ("mass_change", "mass", "-"),
+        ("absolute_vorticity_change", "absolute vorticity, of the integral of |f|", ":"),
     ):
-        axes.semilogy(days[1:], np.maximum(np.abs(series[name][1:]), ROUND_OFF_FLOOR), label=label)
+        axes.semilogy(days[1:], np.maximum(np.abs(series[name][1:]), ROUND_OFF_FLOOR), style, label=label)
     axes.set_xlabel("time (days)")
     axes.set_ylabel("|relative change since the start|")
     axes.set_title(f"Conservation: {title} (values below {ROUND_OFF_FLOOR:g} drawn there)")

@@ -18,6 +18,10 @@ LONG_SIDE = np.radians(15.0)
 """Sides that span more longitude than this are drawn as curves of several points: they lie near a pole."""
 
 
+ON_THE_POLE = 1e-9
+"""Sides closer to a pole than this (radians) run through it."""
+
+
 @dataclass(frozen=True)
 class Polygons:
     """Outlines on a map, each (n_points, 2), and the cell that each shows; a cell on a seam is shown twice."""
@@ -59,16 +63,16 @@ def mollweide_polygons(mesh: VoronoiMesh, central_longitude: float) -> Polygons:
     longitude, latitude = to_lonlat(corners)
     longitude = center[:, None] + _wrapped(longitude - mesh.lon_cell[:, None])
     steps = np.abs(np.diff(longitude, axis=1, append=longitude[:, :1]))
-    near_pole = steps.max(axis=1) > LONG_SIDE
+    near_pole = (steps.max(axis=1) > LONG_SIDE) | (np.abs(latitude).max(axis=1) > 0.5 * np.pi - ON_THE_POLE)
     outlines = mollweide(longitude, latitude)
     shift = np.where(longitude.max(axis=1) > np.pi, -2.0 * np.pi, 2.0 * np.pi)
     on_seam = (np.abs(longitude).max(axis=1) > np.pi) & ~near_pole
     copies = mollweide(longitude[on_seam] + shift[on_seam, None], latitude[on_seam])
     polar_outlines, polar_cells = [], []
     for cell in np.flatnonzero(near_pole):
-        outline = _outline_near_pole(corners[cell, : mesh.n_edges_on_cell[cell]], float(mesh.lon_cell[cell]))
-        for turn in (-2.0 * np.pi, 0.0, 2.0 * np.pi):
-            polar_outlines.append(mollweide(outline[:, 0] + center[cell] + turn, outline[:, 1]))
+        ring = corners[cell, : mesh.n_edges_on_cell[cell]]
+        for outline in _outlines_near_pole(ring, float(mesh.lon_cell[cell]), float(center[cell])):
+            polar_outlines.append(outline)
             polar_cells.append(cell)
     return Polygons(
         [*outlines[~near_pole], *copies, *polar_outlines],
@@ -94,29 +98,44 @@ def _from_meridian(longitude: Array, central_longitude: float) -> Array:
     return _wrapped(longitude - central_longitude)
 
 
-def _outline_near_pole(corners: Array, center_longitude: float) -> Array:
-    """Longitude from the centre and latitude (n, 2) of the great-circle sides of one cell at or near a pole."""
-    fraction = np.linspace(0.0, 1.0, POINTS_ON_LONG_SIDE, endpoint=False)[:, None]
-    following = np.roll(corners, -1, axis=0)
+def _outlines_near_pole(corners: Array, cell_longitude: float, center: float) -> list[Array]:
+    """Outlines on the map of one cell at or near a pole, its long sides as curves.
+
+    `center` is the longitude of the cell from the map's central meridian.
+    """
     points = np.concatenate(
-        [normalize((1.0 - fraction) * a + fraction * b) for a, b in zip(corners, following, strict=True)]
+        [_side(start, end) for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     )
     longitude, latitude = to_lonlat(points)
-    longitude = _wrapped(longitude - center_longitude)
+    longitude = center + _wrapped(longitude - cell_longitude)
+    turns = (-2.0 * np.pi, 0.0, 2.0 * np.pi)
     if not _surrounds_pole(corners):
-        return np.stack([longitude, latitude], axis=1)
+        return [mollweide(longitude + turn, latitude) for turn in turns]
+    # The cell is all that lies poleward of its sides: a strip across the map, closed beyond the rim.
     order = np.argsort(longitude)
-    longitude, latitude = longitude[order], latitude[order]
-    pole = np.copysign(0.5 * np.pi, latitude[0])
-    longitude = np.concatenate(
-        [longitude[-1:] - 2.0 * np.pi, longitude, longitude[:1] + 2.0 * np.pi, [2.0 * np.pi, -2.0 * np.pi]]
-    )
-    latitude = np.concatenate([latitude[-1:], latitude, latitude[:1], [pole, pole]])
-    return np.stack([longitude, latitude], axis=1)
+    strip = mollweide(np.concatenate([longitude[order] + turn for turn in turns]), np.tile(latitude[order], 3))
+    top = np.copysign(np.sqrt(2.0), latitude[0])
+    return [np.concatenate([strip, [[strip[-1, 0], top], [strip[0, 0], top]]])]
+
+
+def _side(start: Array, end: Array) -> Array:
+    """Points (n, 3) of a side without its end: the start alone, or a great-circle arc where the side is long."""
+    normal = np.cross(start, end)
+    if abs(normal[2]) < ON_THE_POLE * np.linalg.norm(normal):
+        # The side runs through the pole, towards which meridians curve ever more on the map.
+        to_pole, beyond = (np.hypot(corner[0], corner[1]) for corner in (start, end))
+        pole = to_pole / (to_pole + beyond)
+        way = np.linspace(-1.0, 1.0, 4 * POINTS_ON_LONG_SIDE + 1)[:-1]
+        fraction = pole + np.where(way < 0.0, -pole, 1.0 - pole) * way**2
+    elif abs(_wrapped(np.subtract(*to_lonlat(np.stack([start, end]))[0]))) > LONG_SIDE:
+        fraction = np.linspace(0.0, 1.0, POINTS_ON_LONG_SIDE, endpoint=False)
+    else:
+        return start[None, :]
+    return normalize((1.0 - fraction)[:, None] * start + fraction[:, None] * end)
 
 
 def _surrounds_pole(corners: Array) -> bool:
     """Whether a pole lies strictly inside a counter-clockwise cell."""
     pole = np.array([0.0, 0.0, np.copysign(1.0, corners[:, 2].mean())])
     sides = dot(np.cross(corners, np.roll(corners, -1, axis=0)), np.broadcast_to(pole, corners.shape))
-    return bool(np.all(sides > 1e-12))
+    return bool(np.all(sides > ON_THE_POLE * np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)))

@@ -5,7 +5,7 @@ import shlex
 import sys
 import warnings
 from pathlib import Path
-from typing import Annotated, TextIO
+from typing import Annotated
 
 import typer
 
@@ -137,15 +137,13 @@ def _command_line() -> str:
     return shlex.join(["trisk", *sys.argv[1:]])
 
 
-def _show_warning(
-    message: Warning | str, category: type[Warning], *_: object, file: TextIO | None = None, line: str | None = None
-) -> None:
-    typer.echo(f"warning: {message}", err=True)
+def _warning_line(message: Warning | str, *_: object) -> str:
+    return f"warning: {message}\n"
 
 
 def main() -> None:
     """Run the command line; exit with 0 when done, 1 where a run failed, 2 on bad input."""
-    warnings.showwarning = _show_warning
+    warnings.formatwarning = _warning_line  # type: ignore[assignment]
     try:
         app()
     except Exception as error:

@@ -1,0 +1,225 @@
+import shutil
+import warnings
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+from mesh import MeshError, MeshWarning, VoronoiMesh, read_mesh, write_mesh
+from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES
+from mesh.io import mesh_hash
+
+
+@pytest.fixture
+def mesh_file(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> Path:
+    path = tmp_path / "mesh.nc"
+    write_mesh(icosahedral_mesh, path, history="made by a test")
+    return path
+
+
+def copy_as(source: Path, target: Path, file_format: str, **changes: object) -> Path:
+    """Copy a mesh file in another format; `drop`, `add` and `single` change what it holds."""
+    drop = changes.get("drop", ())
+    with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w", format=file_format) as new:
+        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, len(dimension))
+        for name, variable in old.variables.items():
+            if name not in drop:  # type: ignore[operator]
+                new.createVariable(name, variable.dtype, variable.dimensions)[:] = variable[:]
+        if changes.get("add"):
+            new.createDimension("nVertLevels", 3)
+            new.createVariable("zMid", "f4", ("nVertLevels",))[:] = 1.0
+            new.createVariable("xtime", "S1", ("nVertLevels",))
+    return target
+
+
+def test_round_trip_is_exact_and_silent(icosahedral_mesh: VoronoiMesh, mesh_file: Path) -> None:
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read = read_mesh(mesh_file)
+    for variable in MESH_VARIABLES:
+        np.testing.assert_array_equal(getattr(read, variable.name), getattr(icosahedral_mesh, variable.name))
+    assert read.sphere_radius == 1.0
+    assert mesh_hash(read) == mesh_hash(icosahedral_mesh)
+
+
+def test_file_has_what_mpas_readers_expect(mesh_file: Path) -> None:
+    with netCDF4.Dataset(mesh_file) as file:
+        assert set(file.dimensions) == set(DIMENSIONS.values())
+        assert {variable.file_name for variable in MESH_VARIABLES} < set(file.variables)
+        assert {"indexToCellID", "indexToEdgeID", "indexToVertexID"} < set(file.variables)
+        assert file["indexToCellID"][:].tolist() == list(range(1, 643))
+        assert file.on_a_sphere == "YES"
+        assert file.is_periodic == "NO"
+        assert file.sphere_radius == 1.0
+        assert file.mesh_spec == "1.0"
+        assert file.Conventions == "MPAS"
+        assert "made by a test" in file.history
+        assert len(file.file_id) == 10
+        assert file["cellsOnEdge"][:].min() == 1
+        pentagons = file["nEdgesOnCell"][:] == 5
+        assert np.all(file["edgesOnCell"][:][pentagons, 5] == 0)
+
+
+@pytest.mark.parametrize("file_format", ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4"])
+def test_all_formats_are_read(mesh_file: Path, tmp_path: Path, file_format: str) -> None:
+    copy = copy_as(mesh_file, tmp_path / "copy.nc", file_format)
+    assert mesh_hash(read_mesh(copy)) == mesh_hash(read_mesh(mesh_file))
+
+
+def test_optional_variables_may_be_absent_and_others_present(mesh_file: Path, tmp_path: Path) -> None:
+    optional = [variable.file_name for variable in MESH_VARIABLES if not variable.required]
+    drop = [*optional, "indexToCellID", "indexToEdgeID", "indexToVertexID"]
+    copy = copy_as(mesh_file, tmp_path / "copy.nc", "NETCDF3_64BIT_OFFSET", drop=drop, add=True)
+    read, original = read_mesh(copy), read_mesh(mesh_file)
+    assert len(drop) == 11
+    np.testing.assert_allclose(read.lat_edge, original.lat_edge, atol=1e-15)
+    assert np.all(read.mesh_density == 1.0)
+
+
+def test_whatever_fills_the_rings_is_ignored(mesh_file: Path) -> None:
+    before = mesh_hash(read_mesh(mesh_file))
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        pentagons = np.flatnonzero(file["nEdgesOnCell"][:] == 5)
+        for cell in pentagons:
+            file["edgesOnCell"][cell, 5] = 99999
+            file["cellsOnCell"][cell, 5] = 643
+    assert mesh_hash(read_mesh(mesh_file)) == before
+
+
+def test_earth_sized_file_is_read(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    path = tmp_path / "earth.nc"
+    write_mesh(icosahedral_mesh.scaled(6371229.0), path)
+    read = read_mesh(path)
+    assert read.sphere_radius == 6371229.0
+    np.testing.assert_allclose(read.dc_edge, 6371229.0 * icosahedral_mesh.dc_edge, rtol=1e-15)
+
+
+def test_noise_of_converters_is_accepted_with_a_warning(mesh_file: Path) -> None:
+    random = np.random.default_rng(0)
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        for name in ("areaCell", "kiteAreasOnVertex", "weightsOnEdge"):
+            values = file[name][:]
+            file[name][:] = values * (1 + 1e-7 * random.uniform(-1, 1, values.shape))
+    with pytest.warns(MeshWarning, match=r"holds only to \d\.\de-0[78].*recompute"):
+        read_mesh(mesh_file)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        read_mesh(mesh_file, recompute_metrics=True)
+
+
+def test_recomputed_metrics_follow_from_generators_alone(mesh_file: Path) -> None:
+    original = read_mesh(mesh_file)
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        for name in ("areaCell", "dcEdge", "weightsOnEdge", "xVertex", "latCell"):
+            file[name][:] = 7.0
+    with pytest.raises(MeshError):
+        read_mesh(mesh_file)
+    rebuilt = read_mesh(mesh_file, recompute_metrics=True)
+    for variable in MESH_VARIABLES:
+        if not variable.name.startswith(("lon_", "angle_")):  # the same angle may stand as 0 or 2 pi
+            np.testing.assert_allclose(
+                getattr(rebuilt, variable.name), getattr(original, variable.name), atol=1e-12, err_msg=variable.name
+            )
+
+
+def edit(path: Path, name: str, index: object, value: float) -> None:
+    with netCDF4.Dataset(path, "r+") as file:
+        file[name][index] = value
+
+
+def test_nan_coordinate_is_refused(mesh_file: Path) -> None:
+    edit(mesh_file, "xCell", 3, np.nan)
+    for recompute in (False, True):
+        with pytest.raises(MeshError, match=r"mesh\.nc: cells 3 \(counted from 0\): xCell is not a finite number"):
+            read_mesh(mesh_file, recompute)
+
+
+def test_swapped_orientation_is_refused(mesh_file: Path) -> None:
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        file["cellsOnVertex"][8, :] = file["cellsOnVertex"][8, ::-1]
+    with pytest.raises(MeshError, match="vertices 8"):
+        read_mesh(mesh_file)
+
+
+@pytest.mark.parametrize("name", [variable.file_name for variable in MESH_VARIABLES if variable.required])
+def test_missing_variable_is_named(mesh_file: Path, tmp_path: Path, name: str) -> None:
+    copy = copy_as(mesh_file, tmp_path / "copy.nc", "NETCDF4", drop=[name])
+    with pytest.raises(MeshError, match=f"the variable {name} is missing"):
+        read_mesh(copy)
+
+
+def test_wrong_count_is_refused(mesh_file: Path) -> None:
+    edit(mesh_file, "nEdgesOnCell", 40, 9)
+    with pytest.raises(MeshError, match=r"cells 40 .*nEdgesOnCell is not between 3 and 6"):
+        read_mesh(mesh_file)
+
+
+def test_radius_that_disagrees_is_refused(mesh_file: Path) -> None:
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        file.sphere_radius = 6371229.0
+    with pytest.raises(MeshError, match=r"not at sphere_radius = 6\.37123e"):
+        read_mesh(mesh_file)
+
+
+@pytest.mark.parametrize(
+    ("attribute", "value", "words"),
+    [
+        ("on_a_sphere", "NO", "not on a sphere"),
+        ("sphere_radius", "large", "must be a positive number"),
+        ("sphere_radius", -1.0, "must be a positive number"),
+    ],
+)
+def test_wrong_attributes_are_refused(mesh_file: Path, attribute: str, value: object, words: str) -> None:
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        file.setncattr(attribute, value)
+    with pytest.raises(MeshError, match=words):
+        read_mesh(mesh_file)
+
+
+@pytest.mark.parametrize("file_format", ["NETCDF3_64BIT_OFFSET", "NETCDF4"])
+@pytest.mark.parametrize("part", [0.0, 0.001, 0.3, 0.7, 0.95])
+def test_truncated_file_is_refused(mesh_file: Path, tmp_path: Path, file_format: str, part: float) -> None:
+    copy = copy_as(mesh_file, tmp_path / "copy.nc", file_format)
+    content = copy.read_bytes()
+    copy.write_bytes(content[: int(part * len(content))])
+    with pytest.raises(MeshError, match=r"copy\.nc"):
+        read_mesh(copy)
+
+
+def test_absent_file_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match=r"nothing\.nc: no such file"):
+        read_mesh(tmp_path / "nothing.nc")
+
+
+def test_interrupted_write_leaves_nothing(
+    icosahedral_mesh: VoronoiMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("mesh.io.write_mesh_variables", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write_mesh(icosahedral_mesh, tmp_path / "mesh.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_unwritable_place_is_refused(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    with pytest.raises(MeshError, match="cannot be written"):
+        write_mesh(icosahedral_mesh, tmp_path / "absent" / "mesh.nc")
+
+
+COMMUNITY_MESH = Path(__file__).parents[3] / "shared" / "meshes" / "x1.2562.grid.nc"
+
+
+@pytest.mark.skipif(not COMMUNITY_MESH.exists(), reason="the community mesh is not beside the checkout")
+def test_community_mesh_is_read_with_a_warning(tmp_path: Path) -> None:
+    path = shutil.copy(COMMUNITY_MESH, tmp_path / "x1.nc")
+    with pytest.warns(MeshWarning, match="sum of kites = areaCell holds only to 7.7e-08"):
+        mesh = read_mesh(path)
+    rebuilt = read_mesh(path, recompute_metrics=True)
+    np.testing.assert_allclose(rebuilt.area_cell, mesh.area_cell, rtol=2e-7)
+    np.testing.assert_allclose(rebuilt.weights_on_edge, mesh.weights_on_edge, atol=1e-7)
+    assert BY_NAME["weights_on_edge"].file_name == "weightsOnEdge"

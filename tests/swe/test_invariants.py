@@ -1,0 +1,45 @@
+import numpy as np
+import pytest
+
+from cases import Williamson2
+from mesh import VoronoiMesh
+from swe import Simulation
+from swe.invariants import integral, relative_changes
+
+
+def test_integrals_of_solid_rotation(larger_mesh: VoronoiMesh) -> None:
+    """Closed forms for the steady flow: h = h0 - c sin^2, u = u0 cos."""
+    case = Williamson2()
+    found = Simulation(larger_mesh, case).initial_invariants
+    a, g, u0, omega, h0 = case.radius, case.gravity, case.wind_speed, case.rotation_rate, case.reference_depth
+    c = (a * omega * u0 + u0**2 / 2) / g
+    sphere = 4 * np.pi * a**2
+    assert found.mass == pytest.approx(sphere * (h0 - c / 3), rel=1e-5)
+    kinetic = sphere * 0.5 * u0**2 * (h0 * 2 / 3 - c * 2 / 15)
+    assert found.kinetic_energy == pytest.approx(kinetic, rel=2e-3)
+    assert found.potential_energy == pytest.approx(sphere * g / 2 * (h0**2 - 2 * h0 * c / 3 + c**2 / 5), rel=1e-4)
+    assert found.available_potential_energy == pytest.approx(sphere * g / 2 * c**2 * 4 / 45, rel=2e-3)
+    assert found.planetary_vorticity_magnitude == pytest.approx(sphere * omega, rel=1e-3)
+    assert abs(found.absolute_vorticity) < 1e-10 * found.planetary_vorticity_magnitude
+    sine = np.linspace(-1, 1, 200001)
+    enstrophy = 0.5 * (2 * omega * sine + 2 * u0 / a * sine) ** 2 / (h0 - c * sine**2)
+    assert found.potential_enstrophy == pytest.approx(sphere * enstrophy.mean(), rel=2e-3)
+
+
+def test_available_energy_differs_from_total_by_a_constant_of_the_mass(icosahedral_mesh: VoronoiMesh) -> None:
+    simulation = Simulation(icosahedral_mesh, Williamson2())
+    start = simulation.initial_invariants
+    simulation.run(days=0.5, progress=False)
+    now = simulation.invariants
+    total = now.total_energy - start.total_energy
+    assert now.available_energy - start.available_energy == pytest.approx(total, abs=1e-9 * start.available_energy)
+    changes = relative_changes(start, now)
+    assert changes.total_energy / changes.total_energy_of_total == pytest.approx(
+        start.total_energy / start.available_energy, rel=1e-9
+    )
+
+
+def test_sum_is_exactly_rounded_in_any_order() -> None:
+    values = np.random.default_rng(0).normal(size=1000) * 10.0 ** np.random.default_rng(1).integers(-12, 12, 1000)
+    assert integral(values) == integral(values[::-1]) == integral(np.sort(values))
+    assert integral(np.array([1e16, 1.0, -1e16])) == 1.0

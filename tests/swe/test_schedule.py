@@ -1,0 +1,36 @@
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from swe.schedule import Schedule, dividing_step, step_towards
+
+
+def test_events_are_multiples_and_the_end() -> None:
+    schedule = Schedule(interval=10.0, end=25.0)
+    times, time = [], 0.0
+    while time < 25.0:
+        time = schedule.next_after(time)
+        times.append(time)
+    assert times == [10.0, 20.0, 25.0]
+    assert schedule.next_after(25.0) == float("inf")
+    assert [time for time in range(26) if schedule.is_due(float(time))] == [0, 10, 20, 25]
+
+
+@given(interval=st.floats(1.0, 1e6), limit=st.floats(0.5, 1e4))
+def test_dividing_step_divides_and_is_as_large_as_allowed(interval: float, limit: float) -> None:
+    step = dividing_step(limit, interval)
+    count = interval / step
+    assert count == pytest.approx(round(count), abs=1e-6)
+    assert step <= limit * (1 + 1e-8)
+    assert round(count) == 1 or interval / (round(count) - 1) > limit * (1 - 1e-8)
+
+
+@given(step=st.floats(1.0, 1000.0), interval=st.floats(1.0, 5000.0))
+def test_steps_land_exactly_on_events(step: float, interval: float) -> None:
+    time, count = 0.0, 0
+    while time < interval:
+        length, time = step_towards(time, interval, step)
+        assert 0.0 < length <= step * (1 + 1e-8)
+        count += 1
+    assert time == interval
+    assert count <= interval / step + 2

@@ -1,0 +1,170 @@
+"""The command line: what it prints, what it writes, and how it refuses."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+from trisk.main import main
+
+
+@pytest.fixture
+def trisk(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    """Run the command line in this process; return exit code, output and error output."""
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["trisk", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        code = stop.value.code
+        return (code if isinstance(code, int) else 0), captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture
+def mesh_file(trisk, tmp_path: Path) -> Path:
+    path = tmp_path / "mesh.nc"
+    code, out, err = trisk("mesh", "--cells", 162, "-o", path, "-q")
+    assert (code, out, err) == (0, "", "")
+    return path
+
+
+def test_from_mesh_to_figures(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    code, out, _ = trisk("run", "williamson5", "--mesh", mesh_file, "--days", 1, "-o", tmp_path / "run")
+    assert code == 0
+    assert "completed" in out
+    assert "change of mass" in out
+    code, out, _ = trisk("plot", tmp_path / "run")
+    assert code == 0
+    assert len(list((tmp_path / "run" / "figures").glob("*.png"))) == len(out.split()) == 5
+    assert "trisk mesh --cells 162" in netCDF4.Dataset(mesh_file).history
+
+
+def test_quality_as_json_and_as_table(trisk, mesh_file: Path) -> None:
+    code, out, _ = trisk("quality", mesh_file, "--json")
+    assert code == 0
+    measured = json.loads(out)
+    contract = {"cells", "mu", "sigma_avg", "sigma_min", "q_avg", "q_min", "residual", "obtuse"}
+    assert contract <= set(measured)
+    assert measured["cells"] == 162
+    assert measured["mu"] == pytest.approx(1.164649, abs=1e-6)
+    code, out, _ = trisk("quality", mesh_file)
+    assert code == 0
+    assert "1.164649" in out
+
+
+def test_run_generates_a_mesh_of_any_number(trisk, tmp_path: Path) -> None:
+    code, _, _ = trisk("run", "williamson2", "--cells", 100, "--days", 0.5, "-o", tmp_path / "run", "-q")
+    assert code == 0
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["cells"] == 100
+
+
+def test_help_at_every_level(trisk) -> None:
+    for command in ((), ("mesh",), ("quality",), ("run",), ("plot",)):
+        code, out, _ = trisk(*command, "--help")
+        assert code == 0
+        assert "Usage" in out
+
+
+def damaged(path: Path, kind: str) -> None:
+    if kind == "truncated":
+        content = path.read_bytes()
+        path.write_bytes(content[: len(content) // 2])
+        return
+    with netCDF4.Dataset(path, "r+") as file:
+        if kind == "swapped orientation":
+            file["cellsOnVertex"][3, :] = file["cellsOnVertex"][3, ::-1]
+        elif kind == "not a number":
+            file["yCell"][5] = np.nan
+        elif kind == "missing variable":
+            file.renameVariable("dvEdge", "dvEdges")
+        elif kind == "wrong count":
+            file["nEdgesOnCell"][7] = 4
+
+
+@pytest.mark.parametrize(
+    "kind", ["truncated", "swapped orientation", "not a number", "missing variable", "wrong count"]
+)
+def test_damaged_mesh_is_refused_and_nothing_written(trisk, mesh_file: Path, tmp_path: Path, kind: str) -> None:
+    damaged(mesh_file, kind)
+    before = set(tmp_path.rglob("*"))
+    for arguments in (
+        ("run", "williamson5", "--mesh", mesh_file, "-o", tmp_path / "run"),
+        ("quality", mesh_file),
+    ):
+        code, out, err = trisk(*arguments)
+        assert code == 2
+        assert out == ""
+        assert err.startswith(f"error: {mesh_file}: ")
+        assert err.count("\n") == 1
+        assert set(tmp_path.rglob("*")) == before
+
+
+def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    run = ("run", "williamson5", "--mesh", mesh_file)
+    for arguments, words in (
+        (("run", "williamson55", "--cells", 162, "-o", tmp_path / "run"), "no case named 'williamson55'"),
+        ((*run, "-o", tmp_path / "run", "--dt", -5), "the time step is -5 s"),
+        ((*run, "-o", tmp_path / "run", "--days", 0), "cannot go to day 0"),
+        ((*run, "-o", tmp_path / "run", "--snapshot-hours", 0), "the snapshot interval is 0 s"),
+        ((*run, "-o", mesh_file / "run"), "cannot be used as a run directory"),
+        (("mesh", "--cells", 3, "-o", tmp_path / "x.nc"), "too small"),
+        (("mesh", "--cells", 100, "--start", "icosahedral", "-o", tmp_path / "x.nc"), "choose 42 or 162"),
+        (("mesh", "--cells", 162, "--tolerance", 0, "-o", tmp_path / "x.nc"), "tolerance"),
+        (("mesh", "--cells", 42, "-o", tmp_path / "absent" / "x.nc"), "cannot be written"),
+        (("plot", tmp_path), "holds no readable run"),
+        (("quality", tmp_path / "absent.nc"), "no such file"),
+    ):
+        code, _, err = trisk(*arguments)
+        assert code == 2, arguments
+        last = err.strip().splitlines()[-1]
+        assert last.startswith("error: "), err
+        assert words in last
+        assert "Traceback" not in err
+    assert not (tmp_path / "run" / "run.json").exists()
+
+
+def test_wrong_use_is_code_2(trisk, tmp_path: Path) -> None:
+    for arguments in (
+        ("run", "williamson5", "-o", tmp_path),
+        ("run", "williamson5", "--cells", 42, "--mesh", "x", "-o", tmp_path),
+        ("mesh", "--cells", "many", "-o", "x"),
+        ("dance",),
+    ):
+        code, _, err = trisk(*arguments)
+        assert code == 2
+        assert "Traceback" not in err
+
+
+def test_directory_with_a_run_is_kept_unless_forced(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    run = ("run", "williamson2", "--mesh", mesh_file, "--days", 0.1, "-o", tmp_path / "run", "-q")
+    assert trisk(*run)[0] == 0
+    code, _, err = trisk(*run)
+    assert code == 2
+    assert "holds a run already" in err
+    assert trisk(*run, "--force")[0] == 0
+
+
+def test_blow_up_is_code_1(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    code, _, err = trisk("run", "williamson5", "--mesh", mesh_file, "--dt", 20000, "-o", tmp_path / "run", "-q")
+    assert code == 1
+    assert err.startswith("error: at day ")
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "failed"
+
+
+def test_noise_of_a_file_is_a_warning_in_one_line(trisk, mesh_file: Path) -> None:
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        file["areaCell"][:] *= 1 + 1e-8
+    command = [sys.executable, "-m", "trisk", "quality", str(mesh_file), "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)  # pytest catches warnings
+    assert done.stderr.startswith("warning: ")
+    assert done.stderr.count("\n") == 1
+    assert json.loads(done.stdout)["cells"] == 162
+    code, _, err = trisk("quality", mesh_file, "--json", "--recompute-metrics")
+    assert (code, err) == (0, "")
