@@ -5,9 +5,9 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
 from mesh.errors import MeshError
-from mesh.generators import starting_points
 from mesh.metrics import compute_metrics
-from mesh.scvt import Callback, optimize
+from mesh.optimizer import Callback, Limits
+from mesh.scvt import generate_scvt
 from mesh.sphere import normalize
 from mesh.topology import build_topology
 from mesh.validate import validate_mesh
@@ -51,9 +51,9 @@ def scvt_mesh(
     max_iterations: int = 10_000,
     callback: Callback | None = None,
 ) -> VoronoiMesh:
-    """A validated SCVT of uniform density on the unit sphere; see `mesh.scvt.optimize` for the options.
+    """A validated SCVT of uniform density on the unit sphere; see `mesh.scvt.generate_scvt` for the arguments.
 
     Starts from the bisected icosahedron where that has this number of cells, else from the Fibonacci spiral.
     """
-    result = optimize(starting_points(cells, start), method, tolerance, max_iterations, callback)
+    result = generate_scvt(cells, start, method, Limits(tolerance, max_iterations), callback)
     return mesh_from_points(result.points, result.triangles)

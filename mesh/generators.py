@@ -3,8 +3,9 @@
 import numpy as np
 
 from mesh.arrays import Array, Index
-from mesh.delaunay import delaunay, half_edge_twins
+from mesh.delaunay import delaunay
 from mesh.errors import MeshError
+from mesh.half_edges import build_twins
 from mesh.sphere import normalize
 
 MINIMUM_CELLS = 12
@@ -21,34 +22,47 @@ def icosahedron() -> Array:
     return normalize(np.array([np.roll(vertex, shift) for vertex in vertices for shift in range(3)]))
 
 
-def bisect(points: Array, triangles: Index) -> tuple[Array, Index]:
+def bisect(points: Array, triangles: Index) -> tuple[Array, Index, Index]:
     """Insert the midpoint of every side; each triangle becomes four.
 
-    Takes points (n, 3) and closed triangles (m, 3); returns points (n + 3 m / 2, 3), the old ones first, and
-    triangles (4 m, 3) of the same orientation.
+    Takes points (n, 3) and closed triangles (m, 3). Returns points (4 n - 6, 3), the old ones first, triangles
+    (4 m, 3) of the same orientation, the children of triangle t being 4 t to 4 t + 3, and the two old points
+    (3 n - 6, 2) between which each new one lies.
     """
-    twins = half_edge_twins(triangles)
-    half_edges = np.arange(3 * len(triangles))
-    owner = half_edges < twins
-    a = triangles.ravel()
-    b = np.roll(triangles, -1, axis=1).ravel()
-    middle = np.empty(len(half_edges), dtype=np.int32)
-    middle[owner] = len(points) + np.arange(np.count_nonzero(owner), dtype=np.int32)
-    middle[~owner] = middle[twins[~owner]]
-    refined = np.concatenate([points, normalize(points[a[owner]] + points[b[owner]])])
-    ab, bc, ca = middle.reshape(-1, 3).T
-    corner_a, corner_b, corner_c = triangles.T
-    children = [(corner_a, ab, ca), (corner_b, bc, ab), (corner_c, ca, bc), (ab, bc, ca)]
-    return refined, np.stack([np.stack(child, axis=1) for child in children], axis=1).reshape(-1, 3)
+    twins = build_twins(triangles, len(points)).ravel()
+    leading = np.flatnonzero(np.arange(triangles.size) < twins)
+    middles = np.empty(triangles.size, np.int32)
+    middles[leading] = len(points) + np.arange(len(leading), dtype=np.int32)
+    middles[twins[leading]] = middles[leading]
+    ends = np.stack([np.roll(triangles, -1, axis=1).ravel()[leading], np.roll(triangles, 1, axis=1).ravel()[leading]])
+    refined = np.concatenate([points, normalize(points[ends[0]] + points[ends[1]])])
+    a, b, c = triangles.T
+    opposite_a, opposite_b, opposite_c = middles.reshape(-1, 3).T
+    children = [
+        (a, opposite_c, opposite_b),
+        (opposite_c, b, opposite_a),
+        (opposite_b, opposite_a, c),
+        (opposite_a, opposite_b, opposite_c),
+    ]
+    fine = np.stack([np.stack(child, axis=1) for child in children], axis=1).reshape(-1, 3)
+    return refined, fine.astype(np.int32), ends.T.astype(np.int32)
 
 
-def icosahedral_points(level: int) -> Array:
-    """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times; level 0 is the icosahedron itself."""
+def icosahedral_mesh(level: int) -> tuple[Array, Index]:
+    """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times and triangles between them.
+
+    Level 0 is the icosahedron itself. The triangles (20*4^level, 3) are the bisected ones, which are Delaunay.
+    """
     points = icosahedron()
     triangles = delaunay(points)
     for _ in range(level):
-        points, triangles = bisect(points, triangles)
-    return points
+        points, triangles, _ = bisect(points, triangles)
+    return points, triangles
+
+
+def icosahedral_points(level: int) -> Array:
+    """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times; those of each level come first."""
+    return icosahedral_mesh(level)[0]
 
 
 def icosahedral_level(cells: int) -> int | None:

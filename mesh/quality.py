@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
-from mesh.delaunay import half_edge_twins
-from mesh.scvt import mass_and_moment, mean_spacing
+from mesh.moments import masses_and_moments, mean_spacing
 from mesh.sphere import arc_length, dot, normalize
+from mesh.triangulation import Triangulation
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -83,6 +83,8 @@ def centroid_residual(mesh: VoronoiMesh) -> float | None:
     if np.ptp(mesh.mesh_density) > 0.0:
         return None
     points = normalize(mesh.cell_points)
-    triangles = mesh.cells_on_vertex
-    _, moment = mass_and_moment(points, triangles, half_edge_twins(triangles))
+    triangulation = Triangulation(points, mesh.cells_on_vertex)
+    _, moment, _ = masses_and_moments(
+        points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings
+    )
     return float(arc_length(points, normalize(moment)).max()) / mean_spacing(mesh.n_cells)

@@ -1,11 +1,11 @@
 """From triangles to consistently ordered cells, edges and vertices: the only place that sorts connectivity."""
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesh.arrays import Index
-from mesh.delaunay import half_edge_twins
 from mesh.errors import MeshError
+from mesh.half_edges import build_twins
+from mesh.ordering import sort_triangles
 from mesh.voronoi_mesh import Topology
 
 FILL = -1
@@ -17,13 +17,13 @@ def build_topology(triangles: Index, n_cells: int) -> Topology:
     Vertices and edges are numbered after their lowest cells, whatever the order of the triangles, so the result
     depends on the triangulation alone. Raises `MeshError` where the triangles do not close a sphere.
     """
-    triangles = _in_canonical_order(triangles)
+    triangles = sort_triangles(triangles)
     if len(triangles) != 2 * n_cells - 4:
         raise MeshError(f"{n_cells} cells need {2 * n_cells - 4} triangles to close the sphere, not {len(triangles)}")
-    twins = half_edge_twins(triangles)
-    edge_of, forward = _number_edges(triangles, twins)
-    start = triangles.ravel()
+    twins = build_twins(triangles, n_cells).ravel()
+    start = np.roll(triangles, -1, axis=1).ravel()
     end = start[twins]
+    edge_of, forward = _number_edges(start, end, twins)
     left, right = forward // 3, twins[forward] // 3
 
     rings = _rings(start, twins, edge_of, n_cells)
@@ -32,7 +32,6 @@ def build_topology(triangles: Index, n_cells: int) -> Topology:
     n_edges_on_cell = filled.sum(axis=1)
     cells_on_edge = np.stack([start[forward], end[forward]], axis=1)
     n_edges_on_edge, edges_on_edge = _edges_on_edge(edges_on_cell, n_edges_on_cell, cells_on_edge)
-    half_edges = edge_of.reshape(-1, 3)
     return Topology(
         n_edges_on_cell=_index(n_edges_on_cell),
         cells_on_cell=_index(np.where(filled, end[rings], FILL)),
@@ -43,27 +42,17 @@ def build_topology(triangles: Index, n_cells: int) -> Topology:
         cells_on_edge=_index(cells_on_edge),
         vertices_on_edge=_index(np.stack([right, left], axis=1)),
         cells_on_vertex=_index(triangles),
-        edges_on_vertex=_index(np.roll(half_edges, 1, axis=1)),
+        edges_on_vertex=_index(np.roll(edge_of.reshape(-1, 3), -1, axis=1)),
         boundary_vertex=np.zeros(len(triangles), dtype=np.int32),
     )
 
 
-def _index(array: NDArray) -> Index:
+def _index(array: Index) -> Index:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
-def _in_canonical_order(triangles: Index) -> Index:
-    """Triangles turned so that the lowest corner comes first, and sorted."""
-    lowest = np.argmin(triangles, axis=1)
-    corners = (lowest[:, None] + np.arange(3)) % 3
-    turned = np.take_along_axis(triangles, corners, axis=1).astype(np.int64)
-    return turned[np.lexsort(turned.T[::-1])]
-
-
-def _number_edges(triangles: Index, twins: Index) -> tuple[NDArray, NDArray]:
+def _number_edges(start: Index, end: Index, twins: Index) -> tuple[Index, Index]:
     """Edge number of every half-edge, and of every edge its half-edge from the lower to the higher cell."""
-    start = triangles.ravel()
-    end = start[twins]
     forward = np.flatnonzero(start < end)
     forward = forward[np.lexsort((end[forward], start[forward]))]
     edge_of = np.empty(len(start), dtype=np.int64)
@@ -72,7 +61,7 @@ def _number_edges(triangles: Index, twins: Index) -> tuple[NDArray, NDArray]:
     return edge_of, forward
 
 
-def _rings(start: NDArray, twins: NDArray, edge_of: NDArray, n_cells: int) -> NDArray:
+def _rings(start: Index, twins: Index, edge_of: Index, n_cells: int) -> Index:
     """Outgoing half-edges (n_cells, max_edges) of each cell, counter-clockwise from its lowest edge."""
     by_edge = np.argsort(edge_of, kind="stable")[::-1]
     first = np.full(n_cells, FILL, dtype=np.int64)
@@ -96,7 +85,7 @@ def _rings(start: NDArray, twins: NDArray, edge_of: NDArray, n_cells: int) -> ND
     return rings
 
 
-def _edges_on_edge(edges_on_cell: NDArray, n_edges_on_cell: NDArray, cells_on_edge: NDArray) -> tuple[NDArray, NDArray]:
+def _edges_on_edge(edges_on_cell: Index, n_edges_on_cell: Index, cells_on_edge: Index) -> tuple[Index, Index]:
     """Number and list of the edges round both cells of each edge, the edge itself left out."""
     n_edges, max_edges = len(cells_on_edge), edges_on_cell.shape[1]
     edge = np.arange(n_edges)

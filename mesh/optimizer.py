@@ -1,0 +1,277 @@
+"""Descent on the clustering energy: Lloyd's method and Lloyd-preconditioned L-BFGS in one loop.
+
+Both lower the energy E = sum_i of the integral of |x - x_i|^2 over Voronoi cell i (Du, Faber and Gunzburger 1999).
+With m_i the mass of a cell and M_i its moment, the integral of x, the tangential gradient is that of
+2 (m_i x_i - M_i); it vanishes where every generator is the constrained centroid M_i/|M_i| of its cell.
+"""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from mesh.arrays import Array, Index
+from mesh.errors import MeshError
+from mesh.lbfgs import PairMemory, all_dots, combine_and_move, move_all, new_pair
+from mesh.moments import evaluate, mean_spacing, number_of_blocks
+from mesh.multilevel import MultilevelPreconditioner
+from mesh.triangulation import Triangulation
+
+PAIRS = 7
+"""Pairs that L-BFGS remembers."""
+
+GAIN = 0.5
+"""Weight of the coarse grids in the multilevel preconditioner."""
+
+LARGEST_MOVE = 0.5
+"""Largest displacement of a generator in one iteration, in mean spacings: longer moves tangle the triangulation."""
+
+MAXIMUM_HALVINGS = 12
+ARMIJO_FRACTION = 1e-4
+RELATIVE_ROUND_OFF = 1e-13
+"""Changes of energy smaller than this part of it are lost in round-off; then slopes decide on a step."""
+
+WOLFE_FRACTION = 0.8
+
+PATIENCE = 100
+"""Iterations in which neither energy nor residual fall any more before the descent counts as ended by round-off."""
+
+
+@dataclass
+class History:
+    """What each iteration reached: energy (radian^2 steradian), residual (mean spacings), seconds since the start."""
+
+    energy: list[float] = field(default_factory=list)
+    residual: list[float] = field(default_factory=list)
+    seconds: list[float] = field(default_factory=list)
+
+    @property
+    def iterations(self) -> int:
+        """Number of iterations, the starting points not counted."""
+        return len(self.residual) - 1
+
+
+@dataclass(frozen=True)
+class Limits:
+    """When to stop: at a residual in mean spacings, or after so many iterations or seconds."""
+
+    tolerance: float = 1e-8
+    iterations: int = 10_000
+    seconds: float = float("inf")
+
+    def __post_init__(self) -> None:
+        if not self.tolerance > 0.0:
+            raise MeshError(f"the tolerance is {self.tolerance:g} mean spacings; it must be positive")
+
+
+@dataclass(frozen=True)
+class ScvtResult:
+    """Generators (n_cells, 3), their Delaunay triangles, the convergence history, and why the optimiser stopped.
+
+    `reason` is `tolerance`, `iterations`, `seconds` or `round-off`.
+    """
+
+    points: Array
+    triangles: Index
+    history: History
+    reason: str
+
+
+Callback = Callable[[int, float, float], None]
+"""Called after each iteration with its number, the residual and the energy."""
+
+
+class _State:
+    """Points with their energy, and gradient in Lloyd-scaled variables, plain and preconditioned."""
+
+    def __init__(self, points: Array, preconditioned: bool) -> None:
+        self.points = points.copy()
+        self.gradient = np.empty_like(points)
+        self.preconditioned = np.empty_like(points) if preconditioned else self.gradient
+        self.weights = np.ones(len(points))
+        self.energy = np.inf
+        self.slope = 0.0
+        self.residual = np.inf
+
+
+class Optimizer:
+    """Moves points (n, 3) on the unit sphere towards an SCVT of uniform density.
+
+    `method` is `lbfgs` or `lloyd`, which is the same loop without a memory and without coarse grids. `triangles` may
+    give a valid triangulation of the points. Results do not depend on the number of threads.
+    """
+
+    def __init__(self, points: Array, triangles: Index | None = None, method: str = "lbfgs") -> None:
+        if method not in ("lbfgs", "lloyd"):
+            raise MeshError(f"there is no optimisation method named '{method}'; choose lbfgs or lloyd")
+        quasi_newton = method == "lbfgs"
+        self._spacing = mean_spacing(len(points))
+        self._triangulation = Triangulation(points, triangles)
+        self._preconditioner = MultilevelPreconditioner(points, GAIN) if quasi_newton else None
+        self._memory = PairMemory(PAIRS if quasi_newton else 0, len(points))
+        self._current = _State(points, quasi_newton)
+        self._trial = _State(points, quasi_newton)
+        n_blocks = number_of_blocks(len(points))
+        self._pair_partials = np.empty((n_blocks, 2 * (PAIRS + 1) + 1))
+        self._cell_partials = np.empty((n_blocks, 3))
+        self._gradient_square = 0.0
+
+    def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
+        """Iterate until one of the `limits` is reached or round-off allows no further step."""
+        history, begin = History(), time.perf_counter()
+        self._evaluate_trial(self._memory.steps[0])
+        self._accept_start()
+        while True:
+            state = self._current
+            history.energy.append(state.energy)
+            history.residual.append(state.residual)
+            history.seconds.append(time.perf_counter() - begin)
+            if callback is not None:
+                callback(history.iterations, state.residual, state.energy)
+            reason = _reason_to_stop(history, limits)
+            if reason is None and not self._step():
+                reason = "round-off"
+            if reason is not None:
+                self._triangulation.update(state.points)
+                return ScvtResult(state.points, self._triangulation.triangles, history, reason)
+
+    def _step(self) -> bool:
+        """One iteration; False where no step is left, not even down the gradient."""
+        if self._search_along_new_direction():
+            return True
+        self._memory.clear()
+        return self._search_along_new_direction()
+
+    def _search_along_new_direction(self) -> bool:
+        """Halve the step until it is acceptable, and take it; False where none is."""
+        slot, slope, length = self._direction()
+        for _ in range(MAXIMUM_HALVINGS):
+            self._evaluate_trial(self._memory.steps[slot])
+            if self._acceptable(slope, length):
+                self._accept(slot, length)
+                return True
+            length *= 0.5
+            self._move(slot, length)
+        return False
+
+    def _direction(self) -> tuple[int, float, float]:
+        """Write a new direction to a spare slot and move the trial points; give the slot, the slope and the length."""
+        memory, state = self._memory, self._current
+        step_factors, change_factors, scale = memory.factors()
+        slope = -scale * self._gradient_square
+        slope -= float(step_factors @ memory.step_dots + change_factors @ memory.change_dots)
+        if not slope < 0.0:
+            memory.clear()
+            step_factors, change_factors, scale = memory.factors()
+            slope = -self._gradient_square
+        slot = memory.spare_slot()
+        largest = self._pair_partials[:, :1]
+        combine_and_move(
+            state.preconditioned.ravel(),
+            memory.steps,
+            memory.changes,
+            memory.slots,
+            scale,
+            step_factors,
+            change_factors,
+            state.points,
+            state.weights,
+            1.0,
+            slot,
+            self._trial.points,
+            largest,
+        )
+        length = 1.0
+        move = np.sqrt(largest.max()) / self._spacing
+        if move > LARGEST_MOVE:
+            length = LARGEST_MOVE / move
+            self._move(slot, length)
+        return slot, slope, length
+
+    def _move(self, slot: int, length: float) -> None:
+        """Trial points at another length along the direction in `slot`."""
+        state = self._current
+        move_all(state.points, state.weights, self._memory.steps[slot], length, self._trial.points)
+
+    def _evaluate_trial(self, direction: Array) -> None:
+        """Triangulation, energy and gradient at the trial points, and the slope along `direction` there."""
+        state, triangulation = self._trial, self._triangulation
+        triangulation.update(state.points, self._current.points)
+        evaluate(
+            state.points,
+            triangulation.circumcenters,
+            triangulation.ring_starts,
+            triangulation.rings,
+            direction.reshape(-1, 3),
+            self._current.weights,
+            state.gradient,
+            state.weights,
+            self._cell_partials,
+        )
+        state.energy = float(self._cell_partials[:, 0].sum())
+        state.slope = float(self._cell_partials[:, 1].sum())
+        # The squared tangent of the angle between generator and moment, made the chord to the constrained centroid.
+        square = float(self._cell_partials[:, 2].max())
+        root = np.sqrt(1.0 + square)
+        state.residual = float(np.sqrt(2.0 * square / (root * (1.0 + root)))) / self._spacing
+
+    def _acceptable(self, slope: float, length: float) -> bool:
+        """Whether the energy falls (Armijo) or, within round-off, the slope does (Hager and Zhang 2005, eq. (4.1))."""
+        rise = self._trial.energy - self._current.energy
+        if rise <= ARMIJO_FRACTION * length * slope:
+            return True
+        return rise <= RELATIVE_ROUND_OFF * self._current.energy and self._trial.slope <= -WOLFE_FRACTION * slope
+
+    def _accept_start(self) -> None:
+        """Make the first evaluated points the current ones."""
+        self._current, self._trial = self._trial, self._current
+        self._precondition(self._current)
+        self._memory.clear()
+        self._gradient_square = float(np.dot(self._current.gradient.ravel(), self._current.preconditioned.ravel()))
+
+    def _accept(self, slot: int, length: float) -> None:
+        """Make the trial points the current ones and remember the step in `slot`."""
+        old, new, memory, partials = self._current, self._trial, self._memory, self._pair_partials
+        self._precondition(new)
+        new_pair(
+            old.gradient.ravel(),
+            old.preconditioned.ravel(),
+            new.preconditioned.ravel(),
+            memory.steps[slot],
+            memory.changes[slot],
+            length,
+            partials,
+        )
+        old_step, old_change = partials[:, :2].sum(axis=0)
+        old_dots = np.concatenate([memory.step_dots, [old_step], memory.change_dots, [old_change]])
+        slots = np.append(memory.slots, slot)
+        gradient, preconditioned = new.gradient.ravel(), new.preconditioned.ravel()
+        all_dots(gradient, preconditioned, memory.steps, memory.changes, slots, partials)
+        sums = partials[:, : 2 * len(slots) + 1].sum(axis=0)
+        memory.update(slot, old_dots, sums[:-1])
+        self._gradient_square = float(sums[-1])
+        self._current, self._trial = new, old
+
+    def _precondition(self, state: _State) -> None:
+        if self._preconditioner is not None:
+            self._preconditioner.apply(state.gradient, state.preconditioned)
+
+
+def _reason_to_stop(history: History, limits: Limits) -> str | None:
+    if history.residual[-1] <= limits.tolerance:
+        return "tolerance"
+    if history.iterations >= limits.iterations:
+        return "iterations"
+    if history.seconds[-1] >= limits.seconds:
+        return "seconds"
+    return "round-off" if _stagnates(history) else None
+
+
+def _stagnates(history: History) -> bool:
+    """Whether the last iterations lowered the energy by no more than round-off and the residual by less than half."""
+    if history.iterations < PATIENCE:
+        return False
+    fall = history.energy[-1 - PATIENCE] - history.energy[-1]
+    lost_in_round_off = fall <= RELATIVE_ROUND_OFF * history.energy[-1]
+    return lost_in_round_off and min(history.residual[-PATIENCE:]) > 0.5 * min(history.residual[:-PATIENCE])

@@ -1,0 +1,67 @@
+"""Numbering along a space-filling curve, so that neighbours lie close in memory."""
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array, Index
+
+HILBERT_BITS = 20
+"""Each face of the cube has 2^20 by 2^20 places on its curve."""
+
+
+def renumber(points: Array, triangles: Index) -> tuple[Array, Index]:
+    """Points (n, 3) along the curve, and their triangles (m, 3), sorted by their lowest corner."""
+    order = hilbert_order(points)
+    rank = np.empty(len(points), np.int32)
+    rank[order] = np.arange(len(points), dtype=np.int32)
+    return np.ascontiguousarray(points[order]), sort_triangles(rank[triangles])
+
+
+def hilbert_order(points: Array) -> Index:
+    """Permutation (n,) that numbers unit vectors (n, 3) along Hilbert curves on the six faces of a cube."""
+    return np.argsort(_hilbert_keys(points), kind="stable")
+
+
+def sort_triangles(triangles: Index) -> Index:
+    """Triangles (m, 3), int32, turned so that the lowest corner comes first, and sorted."""
+    lowest = np.argmin(triangles, axis=1)
+    corners = (lowest[:, None] + np.arange(3)) % 3
+    turned = np.take_along_axis(triangles, corners, axis=1)
+    return np.ascontiguousarray(turned[np.lexsort((turned[:, 1], turned[:, 0]))], dtype=np.int32)
+
+
+@numba.njit(parallel=True, cache=True)
+def _hilbert_keys(points: Array) -> Index:
+    """Places (n,), int64, along the curves."""
+    keys = np.empty(len(points), np.int64)
+    for point in numba.prange(len(points)):
+        axis = 0
+        for candidate in range(1, 3):
+            if abs(points[point, candidate]) > abs(points[point, axis]):
+                axis = candidate
+        height = points[point, axis]
+        scale = 0.5 * ((1 << HILBERT_BITS) - 1)
+        column = int((points[point, (axis + 1) % 3] / abs(height) + 1.0) * scale + 0.5)
+        row = int((points[point, (axis + 2) % 3] / abs(height) + 1.0) * scale + 0.5)
+        face = 2 * axis + (1 if height < 0.0 else 0)
+        keys[point] = (face << (2 * HILBERT_BITS)) + _hilbert_position(column, row)
+    return keys
+
+
+@numba.njit(cache=True)
+def _hilbert_position(column: int, row: int) -> int:
+    """Place of a square of the grid along the plane Hilbert curve."""
+    position = 0
+    size = 1 << HILBERT_BITS
+    half = size >> 1
+    while half > 0:
+        right = 1 if column & half else 0
+        upper = 1 if row & half else 0
+        position = 4 * position + ((3 * right) ^ upper)
+        if upper == 0:
+            if right == 1:
+                column = size - 1 - column
+                row = size - 1 - row
+            column, row = row, column
+        half >>= 1
+    return position
