@@ -78,8 +78,21 @@ class ScvtResult:
     reason: str
 
 
-Callback = Callable[[int, float, float], None]
-"""Called after each iteration with its number, the residual and the energy."""
+@dataclass(frozen=True)
+class Iterate:
+    """Where an optimiser stands: number of iterations, residual (mean spacings), energy, and points (n_cells, 3).
+
+    The points are the optimiser's own; copy them to keep them.
+    """
+
+    number: int
+    residual: float
+    energy: float
+    points: Array
+
+
+Callback = Callable[[Iterate], None]
+"""Called with the start and after each iteration."""
 
 
 class _State:
@@ -128,7 +141,7 @@ class Optimizer:
             history.residual.append(state.residual)
             history.seconds.append(time.perf_counter() - begin)
             if callback is not None:
-                callback(history.iterations, state.residual, state.energy)
+                callback(Iterate(history.iterations, state.residual, state.energy, state.points))
             reason = _reason_to_stop(history, limits)
             if reason is None and not self._step():
                 reason = "round-off"

@@ -37,4 +37,4 @@ def step_towards(time: float, event: float, time_step: float) -> tuple[float, fl
 
 def dividing_step(limit: float, interval: float) -> float:
     """The largest time step not above `limit` that divides `interval`, seconds."""
-    return interval / np.ceil(interval / limit * (1.0 - ROUNDING))
+    return float(interval / np.ceil(interval / limit * (1.0 - ROUNDING)))

@@ -11,7 +11,7 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
 from mesh import VoronoiMesh, mesh_quality
-from mesh.scvt import Callback
+from mesh.optimizer import Callback, Iterate
 from swe.output import DIAGNOSTICS_FILE, RECORD_FILE, read_series
 
 
@@ -28,11 +28,12 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
     with Progress(*columns, console=Console(stderr=True), disable=not visible) as progress:
         task = progress.add_task("", total=1.0, iteration=0, residual=math.nan, tolerance=tolerance)
 
-        def show(iteration: int, residual: float, energy: float) -> None:
+        def show(iterate: Iterate) -> None:
             nonlocal first
+            residual = iterate.residual
             first = max(residual, 2.0 * tolerance) if math.isnan(first) else first
             way = math.log(first / max(residual, 1e-300)) / math.log(first / tolerance)
-            progress.update(task, completed=min(max(way, 0.0), 1.0), iteration=iteration, residual=residual)
+            progress.update(task, completed=min(max(way, 0.0), 1.0), iteration=iterate.number, residual=residual)
 
         yield show
 

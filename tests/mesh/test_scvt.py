@@ -7,7 +7,7 @@ from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.delaunay import delaunay
 from mesh.generators import fibonacci_points
 from mesh.moments import masses_and_moments
-from mesh.optimizer import Limits, ScvtResult
+from mesh.optimizer import Iterate, Limits, ScvtResult
 from mesh.scvt import generate_scvt, optimize
 from mesh.sphere import arc_length, dot, normalize
 from mesh.triangulation import Triangulation
@@ -152,9 +152,11 @@ def test_round_off_ends_the_descent() -> None:
 
 
 def test_callback_sees_every_iteration() -> None:
-    seen: list[int] = []
-    result = generate_scvt(42, callback=lambda iteration, residual, energy: seen.append(iteration))
-    assert seen == list(range(result.history.iterations + 1))
+    seen: list[Iterate] = []
+    result = generate_scvt(42, callback=seen.append)
+    assert [iterate.number for iterate in seen] == list(range(result.history.iterations + 1))
+    assert [iterate.residual for iterate in seen] == result.history.residual
+    np.testing.assert_array_equal(seen[-1].points, result.points)
 
 
 def test_limits_stop_the_iteration() -> None:
