@@ -4,10 +4,12 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
+from mesh.density import Density, find_density, uniform
 from mesh.errors import MeshError
+from mesh.generators import DEFAULT_SEED
 from mesh.metrics import compute_metrics
 from mesh.optimizer import Callback, Limits
-from mesh.scvt import generate_scvt
+from mesh.scvt import Request, generate_scvt
 from mesh.sphere import normalize
 from mesh.topology import build_topology
 from mesh.validate import validate_mesh
@@ -17,11 +19,14 @@ DEFAULT_TOLERANCE = 1e-8
 """Centroid residual, in mean spacings, at which an SCVT counts as converged."""
 
 
-def mesh_from_points(points: Array, triangles: Index | None = None) -> VoronoiMesh:
+def mesh_from_points(
+    points: Array, triangles: Index | None = None, density: Density = uniform, density_name: str = ""
+) -> VoronoiMesh:
     """The validated Voronoi mesh, on the unit sphere, of generators `points` (n_cells, 3).
 
-    Points are projected onto the sphere. `triangles` may give their Delaunay triangulation. Raises `MeshError`
-    where points are not finite, coincide or do not surround the sphere.
+    Points are projected onto the sphere. `triangles` may give their Delaunay triangulation, `density` and its name
+    what the mesh was generated for. Raises `MeshError` where points are not finite, coincide or do not surround the
+    sphere.
     """
     points = np.asarray(points, dtype=np.float64)
     if points.ndim != 2 or points.shape[1] != 3:
@@ -36,8 +41,9 @@ def mesh_from_points(points: Array, triangles: Index | None = None) -> VoronoiMe
     mesh = VoronoiMesh(
         **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
         **{name: getattr(metrics, name) for name in METRICS_NAMES},
-        mesh_density=np.ones(len(points)),
+        mesh_density=np.ascontiguousarray(density(points), dtype=np.float64),
         sphere_radius=1.0,
+        density_name=density_name,
     )
     validate_mesh(mesh)
     return mesh
@@ -45,15 +51,21 @@ def mesh_from_points(points: Array, triangles: Index | None = None) -> VoronoiMe
 
 def scvt_mesh(
     cells: int,
+    density: str | Density = "uniform",
     start: str | None = None,
     method: str = "lbfgs",
     tolerance: float = DEFAULT_TOLERANCE,
     max_iterations: int = 10_000,
+    seed: int = DEFAULT_SEED,
     callback: Callback | None = None,
 ) -> VoronoiMesh:
-    """A validated SCVT of uniform density on the unit sphere; see `mesh.scvt.generate_scvt` for the arguments.
+    """A validated SCVT on the unit sphere; see `mesh.scvt.Request` for the arguments.
 
-    Starts from the bisected icosahedron where that has this number of cells, else from the Fibonacci spiral.
+    `density` is a name, the name of a NetCDF file, or any callable (see `mesh.density`). Starts from the bisected
+    icosahedron where that has this number of cells, else from the Fibonacci spiral.
     """
-    result = generate_scvt(cells, start, method, Limits(tolerance, max_iterations), callback)
-    return mesh_from_points(result.points, result.triangles)
+    name = density if isinstance(density, str) else ""
+    function = find_density(density) if isinstance(density, str) else density
+    request = Request(cells, start, method, function, seed)
+    result = generate_scvt(request, Limits(tolerance, max_iterations), callback)
+    return mesh_from_points(result.points, result.triangles, function, name)

@@ -1,14 +1,23 @@
-"""Starting points on the unit sphere: recursive bisection of the icosahedron, and the Fibonacci spiral."""
+"""Starting points on the unit sphere: bisection of the icosahedron, the Fibonacci spiral, and random points."""
 
 import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
+from mesh.density import Density, check_density, uniform
 from mesh.errors import MeshError
 from mesh.half_edges import build_twins
 from mesh.sphere import normalize
 
 MINIMUM_CELLS = 12
+STARTS = ("icosahedral", "fibonacci", "random", "random-root")
+DEFAULT_SEED = 0
+
+PROBES = 20_000
+"""Points at which the largest value of a density is sought."""
+
+MARGIN = 1.05
+SMALLEST_ACCEPTANCE = 1e-3
 
 
 def icosahedron() -> Array:
@@ -82,9 +91,42 @@ def fibonacci_points(count: int) -> Array:
     return np.stack([radius * np.cos(longitude), radius * np.sin(longitude), z], axis=1)
 
 
-def starting_points(cells: int, start: str | None = None) -> Array:
-    """Points (cells, 3) to start from: `icosahedral` or `fibonacci`; by default the first where it exists.
+def random_points(count: int, density: Density, generator: np.random.Generator) -> Array:
+    """Points (count, 3) drawn from `density` by rejection with a seeded numpy generator.
 
+    Raises `MeshError` where the density is negative, not finite, or zero nearly everywhere.
+    """
+    bound = _upper_bound(density)
+    drawn: list[Array] = []
+    missing, accepted = count, 0.5
+    while missing > 0:
+        points = normalize(generator.normal(size=(int(1.2 * missing / accepted) + 100, 3)))
+        values = density(points)
+        check_density(values, points)
+        kept = points[generator.random(len(points)) * bound < values]
+        drawn.append(kept[:missing])
+        missing -= len(drawn[-1])
+        accepted = max(len(kept) / len(points), SMALLEST_ACCEPTANCE)
+    return np.concatenate(drawn)
+
+
+def _upper_bound(density: Density) -> float:
+    """A little more than the largest value of `density` at points everywhere on the sphere."""
+    probes = fibonacci_points(PROBES)
+    values = density(probes)
+    check_density(values, probes)
+    if not values.max() > 0.0:
+        raise MeshError("the density is zero everywhere it was tried; give one that is positive")
+    return MARGIN * float(values.max())
+
+
+def starting_points(
+    cells: int, start: str | None = None, density: Density = uniform, seed: int = DEFAULT_SEED
+) -> Array:
+    """Points (cells, 3) to start from, by the name of the `start`.
+
+    `icosahedral` bisection (the default where it has this number of cells), `fibonacci` (the default elsewhere),
+    `random` points drawn from the density, or `random-root` ones drawn from its square root, which converge sooner.
     Raises `MeshError` for fewer than 12 cells, an unknown start, or a number the icosahedron does not give.
     """
     if cells < MINIMUM_CELLS:
@@ -94,8 +136,12 @@ def starting_points(cells: int, start: str | None = None) -> Array:
         start = "fibonacci" if level is None else "icosahedral"
     if start == "fibonacci":
         return fibonacci_points(cells)
+    if start == "random":
+        return random_points(cells, density, np.random.default_rng(seed))
+    if start == "random-root":
+        return random_points(cells, lambda points: np.sqrt(density(points)), np.random.default_rng(seed))
     if start != "icosahedral":
-        raise MeshError(f"there is no start named '{start}'; choose icosahedral or fibonacci")
+        raise MeshError(f"there is no start named '{start}'; choose one of {', '.join(STARTS)}")
     if level is None:
         below = int(np.log(max(cells - 2, 10) / 10) / np.log(4))
         raise MeshError(

@@ -58,6 +58,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
         "source": "trisk",
         "history": f"{stamp}: {history or 'written by trisk'}",
         "file_id": mesh_hash(mesh)[:10],
+        "density_name": mesh.density_name,
     }
 
 
@@ -144,7 +145,8 @@ def _mesh_from_file(file: netCDF4.Dataset) -> VoronoiMesh:
         present[ring] = _fill_beyond(present[ring], present["n_edges_on_cell"], FILL)
     for ring, fill in (("edges_on_edge", FILL), ("weights_on_edge", 0.0)):
         present[ring] = _fill_beyond(present[ring], present["n_edges_on_edge"], fill)
-    return VoronoiMesh(sphere_radius=_sphere_radius(file), **present)
+    name = str(getattr(file, "density_name", ""))
+    return VoronoiMesh(sphere_radius=_sphere_radius(file), density_name=name, **present)
 
 
 def _sphere_radius(file: netCDF4.Dataset) -> float:

@@ -69,11 +69,13 @@ def new_pair(
 
 @numba.njit(cache=True)
 def _move(points: Array, weight: float, direction: Array, length: float, cell: int, trial: Array) -> None:
-    """Write points + length * weight * direction, back on the sphere, to `trial`."""
-    x = points[cell, 0] + length * weight * direction[3 * cell]
-    y = points[cell, 1] + length * weight * direction[3 * cell + 1]
-    z = points[cell, 2] + length * weight * direction[3 * cell + 2]
-    factor = 1.0 / np.sqrt(x * x + y * y + z * z)
+    """Write points + length * weight * direction, back on the sphere, to `trial`; points without a step stay exact."""
+    dx, dy, dz = direction[3 * cell], direction[3 * cell + 1], direction[3 * cell + 2]
+    x = points[cell, 0] + length * weight * dx
+    y = points[cell, 1] + length * weight * dy
+    z = points[cell, 2] + length * weight * dz
+    still = dx == 0.0 and dy == 0.0 and dz == 0.0
+    factor = 1.0 if still else 1.0 / np.sqrt(x * x + y * y + z * z)
     trial[cell, 0], trial[cell, 1], trial[cell, 2] = x * factor, y * factor, z * factor
 
 

@@ -1,6 +1,6 @@
 """Descent on the clustering energy: Lloyd's method and Lloyd-preconditioned L-BFGS in one loop.
 
-Both lower the energy E = sum_i of the integral of |x - x_i|^2 over Voronoi cell i (Du, Faber and Gunzburger 1999).
+Both lower the energy E = sum_i of the integral of rho |x - x_i|^2 over Voronoi cell i (Du, Faber, Gunzburger 1999).
 With m_i the mass of a cell and M_i its moment, the integral of x, the tangential gradient is that of
 2 (m_i x_i - M_i); it vanishes where every generator is the constrained centroid M_i/|M_i| of its cell.
 """
@@ -10,13 +10,16 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
+from mesh.density import Density, uniform
 from mesh.errors import MeshError
 from mesh.lbfgs import PairMemory, all_dots, combine_and_move, move_all, new_pair
 from mesh.moments import evaluate, mean_spacing, number_of_blocks
 from mesh.multilevel import MultilevelPreconditioner
 from mesh.triangulation import Triangulation
+from mesh.weighted_moments import WeightedCells
 
 PAIRS = 7
 """Pairs that L-BFGS remembers."""
@@ -31,6 +34,9 @@ MAXIMUM_HALVINGS = 12
 ARMIJO_FRACTION = 1e-4
 RELATIVE_ROUND_OFF = 1e-13
 """Changes of energy smaller than this part of it are lost in round-off; then slopes decide on a step."""
+
+RELATIVE_QUADRATURE_ERROR = 1e-4
+"""The same under a density: kinks leave errors of this size in the energy, of which the gradient knows nothing."""
 
 WOLFE_FRACTION = 0.8
 
@@ -63,6 +69,14 @@ class Limits:
     def __post_init__(self) -> None:
         if not self.tolerance > 0.0:
             raise MeshError(f"the tolerance is {self.tolerance:g} mean spacings; it must be positive")
+
+    def reason_to_stop(self, history: History) -> str | None:
+        """Which limit the last iteration reached: `tolerance`, `iterations` or `seconds`; None for none."""
+        if history.residual[-1] <= self.tolerance:
+            return "tolerance"
+        if history.iterations >= self.iterations:
+            return "iterations"
+        return "seconds" if history.seconds[-1] >= self.seconds else None
 
 
 @dataclass(frozen=True)
@@ -109,13 +123,21 @@ class _State:
 
 
 class Optimizer:
-    """Moves points (n, 3) on the unit sphere towards an SCVT of uniform density.
+    """Moves points (n, 3) on the unit sphere towards an SCVT.
 
     `method` is `lbfgs` or `lloyd`, which is the same loop without a memory and without coarse grids. `triangles` may
-    give a valid triangulation of the points. Results do not depend on the number of threads.
+    give a valid triangulation of the points. `density` is that of the mass, uniform if None; `fixed` (n,) marks
+    generators that stay where they are. Results do not depend on the number of threads.
     """
 
-    def __init__(self, points: Array, triangles: Index | None = None, method: str = "lbfgs") -> None:
+    def __init__(
+        self,
+        points: Array,
+        triangles: Index | None = None,
+        method: str = "lbfgs",
+        density: Density | None = None,
+        fixed: NDArray[np.bool_] | None = None,
+    ) -> None:
         if method not in ("lbfgs", "lloyd"):
             raise MeshError(f"there is no optimisation method named '{method}'; choose lbfgs or lloyd")
         quasi_newton = method == "lbfgs"
@@ -129,6 +151,12 @@ class Optimizer:
         self._pair_partials = np.empty((n_blocks, 2 * (PAIRS + 1) + 1))
         self._cell_partials = np.empty((n_blocks, 3))
         self._gradient_square = 0.0
+        self._fixed = fixed
+        self._evaluate: Callable[..., None] = evaluate
+        self._noise = RELATIVE_ROUND_OFF
+        if density is not None or fixed is not None:
+            self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
+            self._noise = RELATIVE_QUADRATURE_ERROR
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
         """Iterate until one of the `limits` is reached or round-off allows no further step."""
@@ -142,8 +170,8 @@ class Optimizer:
             history.seconds.append(time.perf_counter() - begin)
             if callback is not None:
                 callback(Iterate(history.iterations, state.residual, state.energy, state.points))
-            reason = _reason_to_stop(history, limits)
-            if reason is None and not self._step():
+            reason = limits.reason_to_stop(history)
+            if reason is None and (_stagnates(history) or not self._step()):
                 reason = "round-off"
             if reason is not None:
                 self._triangulation.update(state.points)
@@ -211,7 +239,7 @@ class Optimizer:
         """Triangulation, energy and gradient at the trial points, and the slope along `direction` there."""
         state, triangulation = self._trial, self._triangulation
         triangulation.update(state.points, self._current.points)
-        evaluate(
+        self._evaluate(
             state.points,
             triangulation.circumcenters,
             triangulation.ring_starts,
@@ -234,7 +262,7 @@ class Optimizer:
         rise = self._trial.energy - self._current.energy
         if rise <= ARMIJO_FRACTION * length * slope:
             return True
-        return rise <= RELATIVE_ROUND_OFF * self._current.energy and self._trial.slope <= -WOLFE_FRACTION * slope
+        return rise <= self._noise * self._current.energy and self._trial.slope <= -WOLFE_FRACTION * slope
 
     def _accept_start(self) -> None:
         """Make the first evaluated points the current ones."""
@@ -269,16 +297,8 @@ class Optimizer:
     def _precondition(self, state: _State) -> None:
         if self._preconditioner is not None:
             self._preconditioner.apply(state.gradient, state.preconditioned)
-
-
-def _reason_to_stop(history: History, limits: Limits) -> str | None:
-    if history.residual[-1] <= limits.tolerance:
-        return "tolerance"
-    if history.iterations >= limits.iterations:
-        return "iterations"
-    if history.seconds[-1] >= limits.seconds:
-        return "seconds"
-    return "round-off" if _stagnates(history) else None
+            if self._fixed is not None:
+                state.preconditioned[self._fixed] = 0.0
 
 
 def _stagnates(history: History) -> bool:

@@ -6,10 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
+from mesh.density import NAMED
+from mesh.gridded_density import density_from_cells
 from mesh.moments import masses_and_moments, mean_spacing
 from mesh.sphere import arc_length, dot, normalize
 from mesh.triangulation import Triangulation
 from mesh.voronoi_mesh import VoronoiMesh
+from mesh.weighted_moments import WeightedCells, centroid_distances
 
 
 @dataclass(frozen=True)
@@ -19,7 +22,7 @@ class Quality:
     `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
     longest distance to a neighbour; `q` of a triangle with sides a, b, c is (b+c-a)(c+a-b)(a+b-c)/(abc), one if
     equilateral. Distances are chords. `residual` is the largest distance between a generator and the constrained
-    centroid of its cell, in mean spacings (None where the density is not uniform); `obtuse` counts Delaunay
+    centroid of its cell, in mean spacings; `obtuse` counts Delaunay
     triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
     """
 
@@ -29,7 +32,7 @@ class Quality:
     sigma_min: float
     q_avg: float
     q_min: float
-    residual: float | None
+    residual: float
     obtuse: int
     area_ratio: float
 
@@ -78,13 +81,18 @@ def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
     return squares[:, 2] > squares[:, 0] + squares[:, 1]
 
 
-def centroid_residual(mesh: VoronoiMesh) -> float | None:
-    """Largest distance from generator to constrained centroid, in mean spacings; None for a varying density."""
-    if np.ptp(mesh.mesh_density) > 0.0:
-        return None
+def centroid_residual(mesh: VoronoiMesh) -> float:
+    """Largest distance from generator to constrained centroid, in mean spacings, for the density of the mesh.
+
+    The density is the one named, or else interpolated between the values at the centres.
+    """
     points = normalize(mesh.cell_points)
     triangulation = Triangulation(points, mesh.cells_on_vertex)
-    _, moment, _ = masses_and_moments(
-        points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings
-    )
-    return float(arc_length(points, normalize(moment)).max()) / mean_spacing(mesh.n_cells)
+    cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
+    if np.ptp(mesh.mesh_density) == 0.0:
+        _, moment, _ = masses_and_moments(*cells)
+        distances = arc_length(points, normalize(moment))
+    else:
+        density = NAMED.get(mesh.density_name) or density_from_cells(points, mesh.mesh_density)
+        distances = centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
+    return float(distances.max()) / mean_spacing(mesh.n_cells)

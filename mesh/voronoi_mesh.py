@@ -88,10 +88,15 @@ class Metrics:
 
 @dataclass(frozen=True, eq=False)
 class VoronoiMesh(Metrics, Topology):
-    """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`."""
+    """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
+
+    `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density`) where
+    that is known.
+    """
 
     mesh_density: Array
     sphere_radius: float
+    density_name: str = ""
 
     @property
     def cell_points(self) -> Array:

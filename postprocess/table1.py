@@ -8,7 +8,7 @@ from mesh.generators import icosahedral_mesh
 from mesh.optimizer import Limits
 from mesh.ordering import renumber
 from mesh.quality import Quality, mesh_quality
-from mesh.scvt import generate_scvt
+from mesh.scvt import Request, generate_scvt
 from swe.errors import SetupError
 
 Measures = tuple[float, float, float, float, float]
@@ -62,7 +62,7 @@ def table1(max_level: int, tolerance: float, tell: Callable[[Row], None] | None 
     rows = []
     for level in range(FIRST_LEVEL, max_level + 1):
         bisection = mesh_quality(mesh_from_points(*renumber(*icosahedral_mesh(level - 1))))
-        result = generate_scvt(bisection.cells, limits=Limits(tolerance))
+        result = generate_scvt(Request(bisection.cells), Limits(tolerance))
         quality = mesh_quality(mesh_from_points(result.points, result.triangles))
         rows.append(Row(level, bisection, quality, result.history.iterations, result.history.seconds[-1]))
         if tell is not None:

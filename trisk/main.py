@@ -28,24 +28,49 @@ Recompute = Annotated[
 
 @app.command()
 def mesh(
-    cells: Annotated[int, typer.Option("--cells", help="Number of cells; 10*4^k+2 gives an icosahedral mesh.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="MPAS mesh file to write.")],
-    start: Annotated[
-        str | None, typer.Option("--start", help="icosahedral or fibonacci; by default the first where it exists.")
+    cells: Annotated[
+        int | None, typer.Option("--cells", help="Number of cells; 10*4^k+2 gives an icosahedral mesh.")
     ] = None,
-    method: Annotated[str, typer.Option("--method", help="lbfgs or lloyd.")] = "lbfgs",
+    density: Annotated[
+        str,
+        typer.Option(
+            "--density", help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc."
+        ),
+    ] = "uniform",
+    start: Annotated[
+        str | None,
+        typer.Option("--start", help="icosahedral, fibonacci, random or random-root; the first where it exists."),
+    ] = None,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.")] = 0,
+    method: Annotated[
+        str, typer.Option("--method", help="lbfgs, lloyd, multilevel, probabilistic or macqueen.")
+    ] = "lbfgs",
+    nested: Annotated[
+        Path | None, typer.Option("--nested", help="Refine this mesh where the density asks for it, keep the rest.")
+    ] = None,
     tolerance: Annotated[
-        float, typer.Option("--tolerance", help="Largest distance to the centroids, in mean spacings.")
-    ] = 1e-8,
+        float | None,
+        typer.Option(
+            "--tolerance", help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density."
+        ),
+    ] = None,
     max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = 10_000,
+    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long.")] = float("inf"),
+    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh import scvt_mesh, write_mesh
-    from trisk.report import convergence_bar, print_quality
+    from mesh import write_mesh
+    from mesh.optimizer import Limits
+    from trisk.generate import MeshOptions, generate
+    from trisk.report import print_quality
 
-    with convergence_bar(tolerance, not quiet) as show:
-        result = scvt_mesh(cells, start, method, tolerance, max_iterations, callback=show)
+    if tolerance is None:
+        tolerance = 1e-8 if density == "uniform" else 1e-6
+    limits = Limits(tolerance, max_iterations, max_seconds)
+    options = MeshOptions(cells, density, start, seed, method, nested, limits, resume, quiet)
+    result = generate(options, output)
     write_mesh(result, output, history=_command_line())
     if not quiet:
         print_quality(result, str(output))

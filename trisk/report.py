@@ -41,7 +41,6 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
 def print_quality(mesh: VoronoiMesh, name: str) -> None:
     """Print the quality of `mesh` as a table."""
     measured = mesh_quality(mesh)
-    residual = "not defined" if measured.residual is None else f"{measured.residual:.2e} mean spacings"
     rows = [
         ("cells", str(measured.cells)),
         ("largest / smallest neighbour distance (mu)", f"{measured.mu:.6f}"),
@@ -49,7 +48,7 @@ def print_quality(mesh: VoronoiMesh, name: str) -> None:
         ("smallest of those (sigma_min)", f"{measured.sigma_min:.6f}"),
         ("mean triangle quality (q_avg)", f"{measured.q_avg:.6f}"),
         ("smallest triangle quality (q_min)", f"{measured.q_min:.6f}"),
-        ("distance to the centroids, at most (residual)", residual),
+        ("distance to the centroids, at most (residual)", f"{measured.residual:.2e} mean spacings"),
         ("obtuse triangles", str(measured.obtuse)),
         ("largest / smallest cell area", f"{measured.area_ratio:.6f}"),
     ]

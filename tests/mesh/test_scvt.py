@@ -8,7 +8,7 @@ from mesh.delaunay import delaunay
 from mesh.generators import fibonacci_points
 from mesh.moments import masses_and_moments
 from mesh.optimizer import Iterate, Limits, ScvtResult
-from mesh.scvt import generate_scvt, optimize
+from mesh.scvt import Request, generate_scvt, optimize
 from mesh.sphere import arc_length, dot, normalize
 from mesh.triangulation import Triangulation
 
@@ -72,7 +72,7 @@ def residual_of(result: ScvtResult) -> float:
 @pytest.mark.parametrize("start", ["fibonacci", "random"])
 def test_energy_never_rises_and_the_residual_is_reached(method: str, start: str) -> None:
     points = fibonacci_points(200) if start == "fibonacci" else random_points(200, 9)
-    result = optimize(points, method=method, limits=Limits(1e-6))
+    result = optimize(points, request=Request(200, method=method), limits=Limits(1e-6))
     energy = np.array(result.history.energy)
     assert np.all(np.diff(energy) <= 1e-13 * energy[0])
     assert energy[-1] < energy[0]
@@ -84,7 +84,7 @@ def test_energy_never_rises_and_the_residual_is_reached(method: str, start: str)
 
 
 def test_all_methods_find_the_same_mesh_and_lbfgs_sooner() -> None:
-    results = {method: generate_scvt(642, method=method) for method in ("lbfgs", "lloyd", "multilevel")}
+    results = {method: generate_scvt(Request(642, method=method)) for method in ("lbfgs", "lloyd", "multilevel")}
     for result in results.values():
         np.testing.assert_allclose(result.points, results["lbfgs"].points, atol=1e-8)
     iterations = {method: result.history.iterations for method, result in results.items()}
@@ -94,7 +94,7 @@ def test_all_methods_find_the_same_mesh_and_lbfgs_sooner() -> None:
 
 def test_lloyd_steps_to_the_centroids() -> None:
     points = fibonacci_points(100)
-    result = optimize(points, method="lloyd", limits=Limits(iterations=1))
+    result = optimize(points, request=Request(100, method="lloyd"), limits=Limits(iterations=1))
     _, moment = mass_and_moment(points, delaunay(points))
     np.testing.assert_allclose(result.points, normalize(moment), atol=1e-13)
 
@@ -142,7 +142,7 @@ def test_quality_of_converged_meshes(cells: int) -> None:
 
 def test_ten_thousand_cells_converge_in_few_iterations() -> None:
     """The specification allows 200; the multilevel preconditioner needs about 30."""
-    assert generate_scvt(10242, limits=Limits(1e-8)).history.iterations < 50
+    assert generate_scvt(Request(10242), Limits(1e-8)).history.iterations < 50
 
 
 def test_round_off_ends_the_descent() -> None:
@@ -153,7 +153,7 @@ def test_round_off_ends_the_descent() -> None:
 
 def test_callback_sees_every_iteration() -> None:
     seen: list[Iterate] = []
-    result = generate_scvt(42, callback=seen.append)
+    result = generate_scvt(Request(42), callback=seen.append)
     assert [iterate.number for iterate in seen] == list(range(result.history.iterations + 1))
     assert [iterate.residual for iterate in seen] == result.history.residual
     np.testing.assert_array_equal(seen[-1].points, result.points)
@@ -167,12 +167,12 @@ def test_limits_stop_the_iteration() -> None:
 
 def test_unreachable_tolerance_and_wrong_requests_are_refused() -> None:
     with pytest.raises(MeshError, match=r"after 3 iterations and does not reach the tolerance 1.0e-08: allow more"):
-        generate_scvt(100, limits=Limits(iterations=3))
+        generate_scvt(Request(100), Limits(iterations=3))
     with pytest.raises(MeshError, match="round-off allows no further step; ask for a larger tolerance"):
-        generate_scvt(100, limits=Limits(1e-18))
+        generate_scvt(Request(100), Limits(1e-18))
     with pytest.raises(MeshError, match="the tolerance is 0 mean spacings; it must be positive"):
         Limits(0.0)
     with pytest.raises(MeshError, match="no optimisation method named 'newton'"):
-        generate_scvt(100, method="newton")
+        generate_scvt(Request(100, method="newton"))
     with pytest.raises(MeshError, match="multilevel method bisects the icosahedron, which gives no mesh of 100 cells"):
-        generate_scvt(100, method="multilevel")
+        generate_scvt(Request(100, method="multilevel"))

@@ -118,6 +118,8 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
         (("mesh", "--cells", 100, "--start", "icosahedral", "-o", tmp_path / "x.nc"), "choose 42 or 162"),
         (("mesh", "--cells", 162, "--tolerance", 0, "-o", tmp_path / "x.nc"), "tolerance"),
         (("mesh", "--cells", 42, "-o", tmp_path / "absent" / "x.nc"), "cannot be written"),
+        (("mesh", "-o", tmp_path / "x.nc"), "give --cells N"),
+        (("mesh", "--cells", 42, "--density", "dense", "-o", tmp_path / "x.nc"), "no density named 'dense'"),
         (("plot", tmp_path), "holds no readable run"),
         (("quality", tmp_path / "absent.nc"), "no such file"),
     ):
@@ -128,6 +130,32 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
         assert words in last
         assert "Traceback" not in err
     assert not (tmp_path / "run" / "run.json").exists()
+
+
+def test_interrupted_generation_resumes(trisk, tmp_path: Path) -> None:
+    output = tmp_path / "mesh.nc"
+    command = ("mesh", "--cells", 500, "--start", "random", "-o", output, "-q")
+    code, _, err = trisk(*command, "--max-iterations", 20)
+    assert code == 2
+    assert "go on with --resume" in err
+    assert "allow more iterations" in err
+    assert not output.exists()
+    code, _, err = trisk(*command, "--seed", 1, "--resume")
+    assert code == 2
+    assert "made with seed = 0, not 1" in err
+    assert trisk(*command, "--resume")[0] == 0
+    assert {path.name for path in tmp_path.iterdir()} == {"mesh.nc"}
+
+
+def test_meshes_under_a_density(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    output = tmp_path / "circle.nc"
+    assert trisk("mesh", "--cells", 300, "--density", "refined-circle", "-o", output, "-q")[0] == 0
+    measured = json.loads(trisk("quality", output, "--json")[1])
+    assert measured["residual"] < 1.1e-6
+    assert measured["mu"] > 2.5
+    code, _, err = trisk("mesh", "--nested", mesh_file, "--density", "refined-box", "-o", output, "-q")
+    assert (code, err) == (0, "")
+    assert json.loads(trisk("quality", output, "--json")[1])["cells"] > 250
 
 
 def test_wrong_use_is_code_2(trisk, tmp_path: Path) -> None:

@@ -1,0 +1,126 @@
+"""A density from a field in a NetCDF file, on a latitude-longitude grid or on a mesh."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+from scipy.interpolate import RegularGridInterpolator
+from scipy.spatial import cKDTree
+
+from mesh.arrays import Array
+from mesh.density import Density
+from mesh.errors import MeshError
+from mesh.sphere import normalize, to_lonlat
+
+DENSITY_VARIABLE = "density"
+LATITUDE_NAMES = ("lat", "latitude")
+LONGITUDE_NAMES = ("lon", "longitude")
+INTERPOLATION_NEIGHBOURS = 3
+SMOOTHING_NEIGHBOURS = 6
+
+
+@dataclass(frozen=True)
+class Shaping:
+    """What is done to a field before it serves as density.
+
+    Values below `floor` are raised to it, then all are smoothed by `smoothing` passes of a mean with the neighbours
+    and raised to `power` (-4 for a field of cell widths).
+    """
+
+    floor: float = 0.0
+    power: float = 1.0
+    smoothing: int = 0
+
+    def apply(self, values: Array, smooth: Callable[[Array], Array]) -> Array:
+        """The shaped values, with `smooth` for one pass."""
+        shaped = np.maximum(values, self.floor)
+        for _ in range(self.smoothing):
+            shaped = smooth(shaped)
+        with np.errstate(divide="ignore"):
+            return shaped**self.power
+
+
+def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> Density:
+    """Return the density that `variable` of a file holds, interpolated between its values.
+
+    On a grid, the variable has dimensions latitude and longitude with coordinates `lat` and `lon` in degrees; on a
+    mesh, the dimension `nCells`, with `xCell`, `yCell`, `zCell` in the file. Raises `MeshError` where the file or
+    the variable cannot be used.
+    """
+    shaping = Shaping() if shaping is None else shaping
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            if variable not in file.variables:
+                raise MeshError(f"{path}: there is no variable named {variable}; name the field {DENSITY_VARIABLE}")
+            field = file[variable]
+            if field.dimensions == ("nCells",):
+                return _density_on_mesh(file, np.asarray(field[:], dtype=float), shaping, path)
+            return _density_on_grid(file, field, shaping, path)
+    except OSError as error:
+        raise MeshError(f"{path}: not a readable NetCDF file ({error}); give one with a density") from error
+
+
+def _check_finite(values: Array, path: str | Path) -> None:
+    wrong = np.count_nonzero(~np.isfinite(values))
+    if wrong:
+        raise MeshError(f"{path}: {wrong} values of the density are not finite; fill them first")
+
+
+def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Density:
+    """Bilinear interpolation in latitude and longitude, periodic in longitude, constant beyond the last rows."""
+    names = [name for choices in (LATITUDE_NAMES, LONGITUDE_NAMES) for name in choices if name in file.variables]
+    if len(names) != 2 or len(field.dimensions) != 2:
+        raise MeshError(
+            f"{path}: {field.name} has dimensions {field.dimensions}; it must live on (lat, lon) with coordinates lat "
+            "and lon in degrees, or on nCells"
+        )
+    latitude, longitude = (np.radians(np.asarray(file[name][:]).astype(float)) for name in names)
+    values = np.asarray(field[:], dtype=float)
+    if values.shape != (len(latitude), len(longitude)):
+        raise MeshError(f"{path}: {field.name} has shape {values.shape} instead of (lat, lon)")
+    _check_finite(values, path)
+    rows, columns = np.argsort(latitude), np.argsort(longitude % (2.0 * np.pi))
+    latitude, longitude = latitude[rows], longitude[columns] % (2.0 * np.pi)
+    values = shaping.apply(values[np.ix_(rows, columns)], _smooth_grid)
+    # One column more on each side makes the grid periodic.
+    longitude = np.concatenate([longitude[-1:] - 2.0 * np.pi, longitude, longitude[:1] + 2.0 * np.pi])
+    values = np.concatenate([values[:, -1:], values, values[:, :1]], axis=1)
+    interpolate = RegularGridInterpolator((latitude, longitude), values)
+
+    def density(points: Array) -> Array:
+        east, north = to_lonlat(points)
+        return interpolate(np.stack([np.clip(north, latitude[0], latitude[-1]), east], axis=-1))
+
+    return density
+
+
+def _smooth_grid(values: Array) -> Array:
+    """Mean of each value, twice weighted, with those to its east, west, north and south."""
+    padded = np.pad(values, ((1, 1), (0, 0)), mode="edge")
+    around = padded[:-2] + padded[2:] + np.roll(values, 1, axis=1) + np.roll(values, -1, axis=1)
+    return 0.5 * values + 0.125 * around
+
+
+def _density_on_mesh(file: netCDF4.Dataset, values: Array, shaping: Shaping, path: str | Path) -> Density:
+    if not all(name in file.variables for name in ("xCell", "yCell", "zCell")):
+        raise MeshError(f"{path}: a density on nCells needs xCell, yCell and zCell in the same file")
+    _check_finite(values, path)
+    centers = normalize(np.stack([np.asarray(file[f"{axis}Cell"][:]).astype(float) for axis in "xyz"], axis=1))
+    neighbours = cKDTree(centers).query(centers, k=SMOOTHING_NEIGHBOURS + 1)[1][:, 1:]
+    shaped = shaping.apply(values, lambda field: 0.5 * field + 0.5 * field[neighbours].mean(axis=1))
+    return density_from_cells(centers, shaped)
+
+
+def density_from_cells(centers: Array, values: Array) -> Density:
+    """Interpolate `values` (n,) at unit vectors `centers` (n, 3): the nearest three, weighted by inverse distance."""
+    tree = cKDTree(centers)
+
+    def density(points: Array) -> Array:
+        distance, cell = tree.query(points, k=INTERPOLATION_NEIGHBOURS)
+        weight = 1.0 / np.maximum(distance, np.finfo(float).tiny)
+        return (weight * values[cell]).sum(axis=1) / weight.sum(axis=1)
+
+    return density

@@ -1,0 +1,97 @@
+"""`trisk mesh`: from options to a mesh file, with progress and checkpoints."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+
+import typer
+
+from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh
+from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
+from mesh.density import find_density
+from mesh.nested import nested_scvt
+from mesh.optimizer import Callback, Iterate, Limits, ScvtResult
+from mesh.scvt import Request, check_converged, generate_scvt, optimize
+from mesh.sphere import normalize
+from trisk.report import convergence_bar
+
+
+@dataclass(frozen=True)
+class MeshOptions:
+    """What the user typed, by the names of the options."""
+
+    cells: int | None
+    density: str
+    start: str | None
+    seed: int
+    method: str
+    nested: Path | None
+    limits: Limits
+    resume: bool
+    quiet: bool
+
+    @property
+    def description(self) -> dict[str, object]:
+        """What determines the generation, for its checkpoint."""
+        return {
+            "cells": self.cells,
+            "density": self.density,
+            "start": self.start,
+            "seed": self.seed,
+            "method": self.method,
+        }
+
+
+def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
+    """The mesh that the options ask for; an interrupted generation leaves a checkpoint beside `output`."""
+    if not output.parent.is_dir():
+        raise MeshError(f"{output}: cannot be written, as there is no folder {output.parent}; choose another place")
+    density = find_density(options.density)
+    with _progress(options, output) as callback:
+        result = _nested(options, callback) if options.nested is not None else _from_start(options, output, callback)
+    return mesh_from_points(result.points, result.triangles, density, options.density)
+
+
+def _from_start(options: MeshOptions, output: Path, callback: Callback) -> ScvtResult:
+    if options.cells is None:
+        raise MeshError("the number of cells is missing; give --cells N")
+    density = find_density(options.density)
+    request = Request(options.cells, options.start, options.method, density, options.seed)
+    if not options.resume:
+        return generate_scvt(request, options.limits, callback)
+    points = load_checkpoint(checkpoint_path(output), options.description)
+    result = optimize(points, None, request, options.limits, callback)
+    check_converged(result, options.limits)
+    return result
+
+
+def _nested(options: MeshOptions, callback: Callback) -> ScvtResult:
+    if options.resume:
+        raise MeshError("a nested mesh keeps no checkpoint; start without --resume")
+    assert options.nested is not None
+    coarse = read_mesh(options.nested)
+    density = find_density(options.density)
+    return nested_scvt(
+        normalize(coarse.cell_points), coarse.cells_on_vertex, density, options.cells, options.limits, callback
+    )
+
+
+@contextmanager
+def _progress(options: MeshOptions, output: Path) -> Iterator[Callback]:
+    """Give a callback that draws the bar and keeps the checkpoint, which is removed when all went well."""
+    keeper = CheckpointKeeper(checkpoint_path(output), options.description)
+    with convergence_bar(options.limits.tolerance, not options.quiet) as show:
+
+        def both(iterate: Iterate) -> None:
+            show(iterate)
+            if options.nested is None:
+                keeper(iterate)
+
+        try:
+            yield both
+        except BaseException:
+            if keeper.save():
+                typer.echo(f"the best points are kept in {checkpoint_path(output)}; go on with --resume", err=True)
+            raise
+    keeper.remove()
