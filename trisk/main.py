@@ -78,15 +78,28 @@ def mesh(
 
 @app.command()
 def quality(
-    file: Annotated[Path, typer.Argument(help="MPAS mesh file.")],
+    file: Annotated[Path | None, typer.Argument(help="MPAS mesh file.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     recompute_metrics: Recompute = False,
+    table1: Annotated[
+        bool, typer.Option("--table1", help="Make Table 1 of Ju, Ringler and Gunzburger (2011) anew instead.")
+    ] = False,
+    max_level: Annotated[int, typer.Option("--max-level", help="Last level of the table, up to 9.")] = 6,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Write a page with the table and figures to this folder.")
+    ] = None,
 ) -> None:
     """Validate a mesh file and measure its quality."""
     from dataclasses import asdict
 
+    from trisk.report import print_quality, print_table1
+
+    if (file is None) != table1:
+        raise typer.BadParameter("give either a mesh file or --table1")
+    if file is None:
+        print_table1(max_level, output)
+        return
     from mesh import mesh_quality, read_mesh
-    from trisk.report import print_quality
 
     read = read_mesh(file, recompute_metrics)
     if as_json:

@@ -1,0 +1,113 @@
+"""Write the page on mesh generation that `trisk quality --table1 -o FOLDER` makes."""
+
+from pathlib import Path
+
+from mesh.build import mesh_from_points
+from mesh.density import NAMED
+from mesh.nested import nested_scvt
+from mesh.optimizer import Limits
+from mesh.quality import mesh_quality
+from mesh.scvt import Request, generate_scvt
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.mesh_report import (
+    CIRCLE_CELLS,
+    PUBLISHED_CIRCLE,
+    RANDOM_CELLS,
+    Tell,
+    circle_meshes,
+    distribution_figure,
+    meshes_figure,
+    optimizer_figure,
+    optimizer_histories,
+    random_meshes,
+    save,
+    sizes_figure,
+    starts_lines,
+    table1_lines,
+)
+from postprocess.table1 import Row, measures
+
+PAGE = "README.md"
+NESTED_CELLS = 5781
+PUBLISHED_NESTED = (5.7079, 0.9006, 0.4012, 0.9904, 0.7114)
+"""Ju, Ringler and Gunzburger (2011): the mesh of equation (13)."""
+
+UNIFORM_TOLERANCE = 1e-6
+VARIABLE_TOLERANCE = 1e-6
+
+
+def nested_mesh() -> VoronoiMesh:
+    """The nested mesh of equation (13), from a converged one of 2562 cells."""
+    coarse = generate_scvt(Request(2562))
+    box = NAMED["refined-box"]
+    result = nested_scvt(coarse.points, coarse.triangles, box, NESTED_CELLS, Limits(VARIABLE_TOLERANCE))
+    return mesh_from_points(result.points, result.triangles, box, "refined-box")
+
+
+def write_page(folder: Path, rows: list[Row], tell: Tell) -> Path:
+    """Make everything but Table 1, whose `rows` are given, and write page and figures to `folder`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    circles = circle_meshes(VARIABLE_TOLERANCE, tell)
+    nested = nested_mesh()
+    tell(f"nested mesh of {nested.n_cells} cells")
+    random = random_meshes(UNIFORM_TOLERANCE, tell)
+    histories = optimizer_histories(tell)
+    shown = {
+        f"uniform, {random[0].mesh.n_cells} cells": random[0].mesh,
+        f"refined-circle, {CIRCLE_CELLS} cells": circles[0].mesh,
+        f"nested refined-box, {NESTED_CELLS} cells": nested,
+    }
+    nested_values = ", ".join(f"{value:.4f}" for value in measures(mesh_quality(nested)))
+    published = ", ".join(f"{value:.4f}" for value in PUBLISHED_NESTED)
+    text = f"""# Mesh generation: quality and convergence
+
+Made by `trisk quality --table1 --max-level {rows[-1].level} -o FOLDER`. Measures as in Ju, Ringler and Gunzburger
+(2011), section 4: μ is the largest over the smallest distance between neighbours, σ the shortest over the longest
+distance of a cell to its neighbours, q the quality of Delaunay triangles. The residual is the largest distance between
+a generator and the constrained centroid of its cell, in mean spacings.
+
+## Table 1, ours and published
+
+{chr(10).join(table1_lines(rows))}
+
+The published table has slips: row 3 is shifted (its bisection σ and q are those of the SCVT, and its SCVT ones repeat
+row 2), the SCVT's μ of row 4 breaks the sequence, and q avg of rows 8 and 9 cannot be. From row 7 on the published
+SCVTs are not converged: μ drifts with the residual that is left. On the way to convergence μ, σ avg and q avg
+overshoot, so look at the residual before comparing digits.
+
+## Variable resolution
+
+{save(meshes_figure(shown), folder, "meshes")}
+
+{save(sizes_figure(shown), folder, "sizes")}
+
+Refined-circle, equation (12), {CIRCLE_CELLS} cells, from several starts; a variable-resolution SCVT is one of many
+local minima:
+
+{chr(10).join(starts_lines(circles))}
+
+{save(distribution_figure(circles, PUBLISHED_CIRCLE, "Refined-circle over starts"), folder, "refined-circle-starts")}
+
+Nested, equation (13), {NESTED_CELLS} cells, generators beyond the transition held fixed: {nested_values}; published:
+{published}.
+
+## Random starts and the icosahedron
+
+{chr(10).join(starts_lines(random))}
+
+Dislocations are pairs of a pentagon and a heptagon beyond the twelve pentagons that every mesh has. The icosahedral
+mesh of {RANDOM_CELLS} cells has none, and less energy than any mesh from random points; it is a local minimum all the
+same, not the global one, which trades some dislocations for stress at the pentagons at the cost of a worse smallest σ.
+Who wants an even mesh for the C-grid scheme, whose local errors follow the shape of the worst cells, takes the
+icosahedral start; random starts serve to see how far results depend on the symmetry of the mesh.
+
+## Optimisers
+
+{save(optimizer_figure(histories), folder, "optimizers")}
+
+L-BFGS, preconditioned by Lloyd's step and coarse icosahedral grids, needs nearly the same number of iterations at any
+size; Lloyd's method needs about four times as many for four times the cells. The probabilistic methods, whose
+iteration here is as many samples as there are cells or more, stop at the noise of their samples.
+"""
+    (folder / PAGE).write_text(text)
+    return folder / PAGE
