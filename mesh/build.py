@@ -4,9 +4,10 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
-from mesh.density import Density, find_density, uniform
+from mesh.density import Density, uniform
 from mesh.errors import MeshError
 from mesh.generators import DEFAULT_SEED
+from mesh.gridded_density import find_density
 from mesh.metrics import compute_metrics
 from mesh.optimizer import Callback, Limits
 from mesh.scvt import Request, generate_scvt

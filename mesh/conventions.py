@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+from mesh.voronoi_mesh import Topology
+
 DIMENSIONS = {
     "n_cells": "nCells",
     "n_edges": "nEdges",
@@ -13,13 +15,25 @@ DIMENSIONS = {
 }
 
 
+def dimension_sizes(mesh: Topology) -> dict[str, int]:
+    """Size of every dimension of a mesh."""
+    return {
+        "n_cells": mesh.n_cells,
+        "n_edges": mesh.n_edges,
+        "n_vertices": mesh.n_vertices,
+        "max_edges": mesh.max_edges,
+        "max_edges_2": 2 * mesh.max_edges,
+        "two": 2,
+        "vertex_degree": 3,
+    }
+
+
 @dataclass(frozen=True)
 class MeshVariable:
     """One mesh array: `name` in memory, dimensions, units in a file of radius in metres, and meaning.
 
     `is_index` marks arrays whose values number entities (from 0 in memory, from 1 in files); `of` is then the
-    dimension they number. `length_power` is the power of the radius that the values scale with. `required`
-    arrays have to be in a file; the others are made anew where absent.
+    dimension they number. `required` arrays have to be in a file; the others are made anew where absent.
     """
 
     name: str
@@ -27,7 +41,6 @@ class MeshVariable:
     units: str
     long_name: str
     of: str | None = None
-    length_power: int = 0
     required: bool = True
     integer: bool = False
 
@@ -49,10 +62,7 @@ def _coordinates(place: str, dimension: str) -> list[MeshVariable]:
         MeshVariable(f"{short}_{place}", (dimension,), "rad", f"{full} of {place}s", required=False)
         for short, full in (("lat", "latitude"), ("lon", "longitude"))
     ]
-    cartesian = [
-        MeshVariable(f"{axis}_{place}", (dimension,), "m", f"Cartesian {axis} of {place}s", length_power=1)
-        for axis in "xyz"
-    ]
+    cartesian = [MeshVariable(f"{axis}_{place}", (dimension,), "m", f"Cartesian {axis} of {place}s") for axis in "xyz"]
     return angles + cartesian
 
 
@@ -80,12 +90,11 @@ MESH_VARIABLES: tuple[MeshVariable, ...] = (
         ("n_vertices", "vertex_degree"),
         "m2",
         "part of a cell in a triangle",
-        length_power=2,
     ),
-    MeshVariable("area_cell", ("n_cells",), "m2", "area of a cell", length_power=2),
-    MeshVariable("area_triangle", ("n_vertices",), "m2", "area of a Delaunay triangle", length_power=2),
-    MeshVariable("dc_edge", ("n_edges",), "m", "distance between the cell centres of an edge", length_power=1),
-    MeshVariable("dv_edge", ("n_edges",), "m", "distance between the vertices of an edge", length_power=1),
+    MeshVariable("area_cell", ("n_cells",), "m2", "area of a cell"),
+    MeshVariable("area_triangle", ("n_vertices",), "m2", "area of a Delaunay triangle"),
+    MeshVariable("dc_edge", ("n_edges",), "m", "distance between the cell centres of an edge"),
+    MeshVariable("dv_edge", ("n_edges",), "m", "distance between the vertices of an edge"),
     MeshVariable("angle_edge", ("n_edges",), "rad", "angle of an edge's normal, counter-clockwise from east"),
     MeshVariable(
         "mesh_density",

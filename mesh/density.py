@@ -97,19 +97,6 @@ NAMED: dict[str, Density] = {
 }
 
 
-def find_density(name: str) -> Density:
-    """Return a density by name, or the one that a NetCDF file holds; raise `MeshError` where there is neither."""
-    if name in NAMED:
-        return NAMED[name]
-    if name.endswith(".nc"):
-        from mesh.gridded_density import read_density
-
-        return read_density(name)
-    raise MeshError(
-        f"there is no density named '{name}'; choose one of {', '.join(NAMED)}, or a NetCDF file by its name in .nc"
-    )
-
-
 def check_density(values: Array, points: Array) -> None:
     """Raise `MeshError` where a value (m,) of a density at points (m, 3) is negative or not finite."""
     wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))

@@ -1,4 +1,4 @@
-"""A density from a field in a NetCDF file, on a latitude-longitude grid or on a mesh."""
+"""Densities by name, and from a field in a NetCDF file on a latitude-longitude grid or on a mesh."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
 
 from mesh.arrays import Array
-from mesh.density import Density
+from mesh.density import NAMED, Density
 from mesh.errors import MeshError
 from mesh.sphere import normalize, to_lonlat
 
@@ -33,6 +33,13 @@ class Shaping:
     power: float = 1.0
     smoothing: int = 0
 
+    def __post_init__(self) -> None:
+        if not (self.floor >= 0.0 and np.isfinite(self.power) and self.smoothing >= 0):
+            raise MeshError(
+                f"a density cannot have the floor {self.floor:g}, the power {self.power:g} and {self.smoothing} passes "
+                "of smoothing; floor and passes must not be negative"
+            )
+
     def apply(self, values: Array, smooth: Callable[[Array], Array]) -> Array:
         """The shaped values, with `smooth` for one pass."""
         shaped = np.maximum(values, self.floor)
@@ -40,6 +47,22 @@ class Shaping:
             shaped = smooth(shaped)
         with np.errstate(divide="ignore"):
             return shaped**self.power
+
+
+def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> Density:
+    """Return the density of this name, or the one that the NetCDF file of this name holds (see `read_density`).
+
+    Raises `MeshError` where there is neither, or where a named density would have to be shaped.
+    """
+    if name.endswith(".nc"):
+        return read_density(name, variable, shaping)
+    if name not in NAMED:
+        raise MeshError(
+            f"there is no density named '{name}'; choose one of {', '.join(NAMED)}, or a NetCDF file by its name in .nc"
+        )
+    if shaping not in (None, Shaping()):
+        raise MeshError(f"the density {name} cannot be shaped; floor, power and smoothing are for fields from files")
+    return NAMED[name]
 
 
 def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> Density:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Index
-from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
+from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
 from mesh.errors import MeshError, MeshWarning
 from mesh.files import written_aside
 from mesh.metrics import compute_metrics
@@ -64,15 +64,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
 
 def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
     """Define the mesh's dimensions in an open file and write its arrays, or those in `names` only."""
-    sizes = {
-        "n_cells": mesh.n_cells,
-        "n_edges": mesh.n_edges,
-        "n_vertices": mesh.n_vertices,
-        "max_edges": mesh.max_edges,
-        "max_edges_2": 2 * mesh.max_edges,
-        "two": 2,
-        "vertex_degree": 3,
-    }
+    sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
         file.createDimension(DIMENSIONS[name], size)
     for place, dimension in PLACES.items():

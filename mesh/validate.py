@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, sum_by_index
-from mesh.conventions import MESH_VARIABLES
+from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.errors import MeshError
 from mesh.metrics import compute_metrics, edge_angles
 from mesh.sphere import dot, normalize
@@ -69,15 +69,7 @@ def _require(valid: NDArray[np.bool_], place: str, problem: str) -> None:
 
 
 def _check_shapes(mesh: VoronoiMesh) -> None:
-    sizes = {
-        "n_cells": mesh.n_cells,
-        "n_edges": mesh.n_edges,
-        "n_vertices": mesh.n_vertices,
-        "max_edges": mesh.max_edges,
-        "max_edges_2": 2 * mesh.max_edges,
-        "two": 2,
-        "vertex_degree": 3,
-    }
+    sizes = dimension_sizes(mesh)
     for variable in MESH_VARIABLES:
         expected = tuple(sizes[dimension] for dimension in variable.dimensions)
         shape = getattr(mesh, variable.name).shape
@@ -102,7 +94,7 @@ def _check_finite(mesh: VoronoiMesh) -> None:
 
 
 def _check_ranges(mesh: VoronoiMesh) -> None:
-    sizes = {"n_cells": mesh.n_cells, "n_edges": mesh.n_edges, "n_vertices": mesh.n_vertices}
+    sizes = dimension_sizes(mesh)
     counts = {"max_edges": mesh.n_edges_on_cell, "max_edges_2": mesh.n_edges_on_edge}
     _require(
         (mesh.n_edges_on_cell >= MINIMUM_RING) & (mesh.n_edges_on_cell <= mesh.max_edges),

@@ -115,16 +115,13 @@ class VoronoiMesh(Metrics, Topology):
 
     def scaled(self, radius: float) -> "VoronoiMesh":
         """The same mesh on a sphere of another radius, in metres."""
-        from mesh.conventions import MESH_VARIABLES
-
         factor = radius / self.sphere_radius
-        changed = {
-            variable.name: getattr(self, variable.name) * factor**variable.length_power
-            for variable in MESH_VARIABLES
-            if variable.length_power
-        }
-        return replace(self, sphere_radius=float(radius), **changed)
+        lengths = {name: getattr(self, name) * factor for name in LENGTH_NAMES}
+        areas = {name: getattr(self, name) * factor**2 for name in AREA_NAMES}
+        return replace(self, sphere_radius=float(radius), **lengths, **areas)
 
 
 TOPOLOGY_NAMES = tuple(field.name for field in fields(Topology))
+LENGTH_NAMES = (*(f"{axis}_{place}" for axis in "xyz" for place in ("cell", "edge", "vertex")), "dc_edge", "dv_edge")
+AREA_NAMES = ("area_cell", "area_triangle", "kite_areas_on_vertex")
 METRICS_NAMES = tuple(field.name for field in fields(Metrics))

@@ -2,14 +2,15 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import typer
 
 from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh
 from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
-from mesh.density import find_density
+from mesh.density import Density
+from mesh.gridded_density import Shaping, find_density
 from mesh.nested import nested_scvt
 from mesh.optimizer import Callback, Iterate, Limits, ScvtResult
 from mesh.scvt import Request, check_converged, generate_scvt, optimize
@@ -23,6 +24,8 @@ class MeshOptions:
 
     cells: int | None
     density: str
+    density_variable: str
+    shaping: Shaping
     start: str | None
     seed: int
     method: str
@@ -31,12 +34,18 @@ class MeshOptions:
     resume: bool
     quiet: bool
 
+    def find_density(self) -> Density:
+        """The density that the options name."""
+        return find_density(self.density, self.density_variable, self.shaping)
+
     @property
     def description(self) -> dict[str, object]:
         """What determines the generation, for its checkpoint."""
         return {
             "cells": self.cells,
             "density": self.density,
+            "density variable": self.density_variable,
+            **{f"density {name}": value for name, value in asdict(self.shaping).items()},
             "start": self.start,
             "seed": self.seed,
             "method": self.method,
@@ -47,7 +56,7 @@ def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
     """The mesh that the options ask for; an interrupted generation leaves a checkpoint beside `output`."""
     if not output.parent.is_dir():
         raise MeshError(f"{output}: cannot be written, as there is no folder {output.parent}; choose another place")
-    density = find_density(options.density)
+    density = options.find_density()
     with _progress(options, output) as callback:
         result = _nested(options, callback) if options.nested is not None else _from_start(options, output, callback)
     return mesh_from_points(result.points, result.triangles, density, options.density)
@@ -56,7 +65,7 @@ def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
 def _from_start(options: MeshOptions, output: Path, callback: Callback) -> ScvtResult:
     if options.cells is None:
         raise MeshError("the number of cells is missing; give --cells N")
-    density = find_density(options.density)
+    density = options.find_density()
     request = Request(options.cells, options.start, options.method, density, options.seed)
     if not options.resume:
         return generate_scvt(request, options.limits, callback)
@@ -71,7 +80,7 @@ def _nested(options: MeshOptions, callback: Callback) -> ScvtResult:
         raise MeshError("a nested mesh keeps no checkpoint; start without --resume")
     assert options.nested is not None
     coarse = read_mesh(options.nested)
-    density = find_density(options.density)
+    density = options.find_density()
     return nested_scvt(
         normalize(coarse.cell_points), coarse.cells_on_vertex, density, options.cells, options.limits, callback
     )

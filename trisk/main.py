@@ -38,6 +38,16 @@ def mesh(
             "--density", help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc."
         ),
     ] = "uniform",
+    density_variable: Annotated[
+        str, typer.Option("--density-variable", help="Variable of FILE.nc that holds the density.")
+    ] = "density",
+    density_floor: Annotated[float, typer.Option("--density-floor", help="Raise smaller values of the field.")] = 0.0,
+    density_power: Annotated[
+        float, typer.Option("--density-power", help="Power of the field that is the density; -4 for cell widths.")
+    ] = 1.0,
+    density_smoothing: Annotated[
+        int, typer.Option("--density-smoothing", help="Passes of smoothing of the field, before the power.")
+    ] = 0,
     start: Annotated[
         str | None,
         typer.Option("--start", help="icosahedral, fibonacci, random or random-root; the first where it exists."),
@@ -62,6 +72,7 @@ def mesh(
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
     from mesh import write_mesh
+    from mesh.gridded_density import Shaping
     from mesh.optimizer import Limits
     from trisk.generate import MeshOptions, generate
     from trisk.report import print_quality
@@ -69,7 +80,8 @@ def mesh(
     if tolerance is None:
         tolerance = 1e-8 if density == "uniform" else 1e-6
     limits = Limits(tolerance, max_iterations, max_seconds)
-    options = MeshOptions(cells, density, start, seed, method, nested, limits, resume, quiet)
+    shaping = Shaping(density_floor, density_power, density_smoothing)
+    options = MeshOptions(cells, density, density_variable, shaping, start, seed, method, nested, limits, resume, quiet)
     result = generate(options, output)
     write_mesh(result, output, history=_command_line())
     if not quiet:

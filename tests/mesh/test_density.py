@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from mesh import MeshError, mesh_from_points, mesh_quality, read_mesh, scvt_mesh, write_mesh
-from mesh.density import NAMED, RefinedBox, RefinedCircle, SmoothTransition, find_density, uniform
+from mesh.density import NAMED, RefinedBox, RefinedCircle, SmoothTransition, uniform
 from mesh.generators import fibonacci_points, random_points
-from mesh.gridded_density import Shaping, read_density
+from mesh.gridded_density import Shaping, find_density, read_density
 from mesh.moments import masses_and_moments
 from mesh.optimizer import Limits, Optimizer
 from mesh.sphere import from_lonlat, normalize, to_lonlat
@@ -42,6 +42,13 @@ def test_circle_is_whole_where_it_crosses_the_prime_meridian() -> None:
 def test_unknown_density_is_refused_with_the_choices() -> None:
     with pytest.raises(MeshError, match="no density named 'fine'; choose one of uniform, refined-circle"):
         find_density("fine")
+
+
+def test_named_densities_are_not_shaped() -> None:
+    with pytest.raises(MeshError, match="refined-circle cannot be shaped"):
+        find_density("refined-circle", shaping=Shaping(floor=1.0))
+    with pytest.raises(MeshError, match="floor and passes must not be negative"):
+        Shaping(smoothing=-1)
 
 
 def weighted(points: np.ndarray, density) -> np.ndarray:
