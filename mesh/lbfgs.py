@@ -54,7 +54,10 @@ def new_pair(
     length: float,
     partials: Array,
 ) -> None:
-    """Finish a pair in place: step *= length, change = difference of B g; sums of g.step and g.change by block."""
+    """Finish a pair in place: step *= length, change = difference of B g.
+
+    Columns of `partials` get g.step, g.change and step.step by block, g the old gradient.
+    """
     size = len(step)
     for block in numba.prange(len(partials)):
         start, stop = 3 * BLOCK * block, min(3 * BLOCK * (block + 1), size)
@@ -65,6 +68,7 @@ def new_pair(
                 step[index] *= length
         partials[block, 0] = _block_dot(old_gradient, step, start, stop)
         partials[block, 1] = _block_dot(old_gradient, change, start, stop)
+        partials[block, 2] = _block_dot(step, step, start, stop)
 
 
 @numba.njit(cache=True)
@@ -157,15 +161,15 @@ class PairMemory:
         """A row that no pair occupies."""
         return next(slot for slot in range(self.capacity + 1) if slot not in self.slots)
 
-    def update(self, slot: int, old_dots: Array, new_dots: Array) -> None:
-        """Take note of a new gradient, and keep the pair in `slot` if its curvature is positive.
+    def update(self, slot: int, old_dots: Array, new_dots: Array, least_curvature: float) -> None:
+        """Take note of a new gradient, and keep the pair in `slot` if its curvature s.y is above the least.
 
         Both arrays hold the products of a gradient with all s, that of `slot` last, then with all z: `old_dots` of
         the gradient before the step, `new_dots` of the one after it.
         """
         steps, changes = np.split(new_dots, 2)
         step_column, change_column = np.split(new_dots - old_dots, 2)
-        if step_column[-1] > SMALLEST_CURVATURE * change_column[-1] > 0.0:
+        if step_column[-1] > max(SMALLEST_CURVATURE * change_column[-1], least_curvature) and change_column[-1] > 0.0:
             self._append(slot, step_column, change_column)
             kept = slice(len(steps) - len(self.slots), len(steps))
         else:

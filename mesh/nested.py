@@ -14,22 +14,27 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index
 from mesh.density import Density
 from mesh.errors import MeshError
-from mesh.generators import fibonacci_points
+from mesh.generators import DEFAULT_SEED, fibonacci_points
 from mesh.optimizer import Callback, Limits, Optimizer, ScvtResult
 from mesh.ordering import hilbert_order
+from mesh.reseed import reseed
 from mesh.scvt import check_converged
 from mesh.sphere import normalize
 
 PROBES = 20_000
 """Points at which the mean of the density's root is taken."""
 
-BISECTED_ABOVE, TRISECTED_ABOVE = 1.5, 2.5
+BISECTED_ABOVE, TRISECTED_ABOVE = 1.3, 2.2
 """Edges are divided in two or three where cells are to be narrower by at least this ratio."""
 
 OUTSIDE = 1.0 + 1e-9
 """Where the ratio of widths is below this, nothing is refined and generators are fixed."""
 
 SEARCH_STEPS = 60
+
+WANTED_QUALITY = 0.72
+RESEEDINGS = 8
+"""Surroundings of triangles below the wanted quality are shaken and converged again, so often at most."""
 
 
 def nested_scvt(
@@ -39,11 +44,13 @@ def nested_scvt(
     cells: int | None = None,
     limits: Limits | None = None,
     callback: Callback | None = None,
+    seed: int = DEFAULT_SEED,
 ) -> ScvtResult:
     """Refine the tessellation of unit vectors `points` (n, 3) with `triangles` where `density` is above its lowest.
 
     `cells` is the number of generators in the end; by default that which keeps the widths of the fixed cells in
-    proportion. Raises `MeshError` for a number that the region cannot take, or where the tolerance is not reached.
+    proportion. `seed` steers how bad triangles are shaken away. Raises `MeshError` for a number that the region cannot
+    take, or where the tolerance is not reached.
     """
     limits = Limits() if limits is None else limits
     ratio = _Refinement(density, float(density(points).min()))
@@ -57,7 +64,12 @@ def nested_scvt(
     fixed = np.concatenate([ratio(points) <= OUTSIDE, np.zeros(len(added), bool)])
     order = hilbert_order(everything)
     start = np.ascontiguousarray(everything[order])
-    result = Optimizer(start, density=density, fixed=fixed[order]).run(limits, callback)
+    fixed = fixed[order]
+
+    def converge(points: Array) -> ScvtResult:
+        return Optimizer(points, density=density, fixed=fixed).run(limits, callback)
+
+    result = reseed(converge(start), converge, WANTED_QUALITY, RESEEDINGS, seed, fixed)
     check_converged(result, limits)
     return result
 

@@ -38,6 +38,10 @@ RELATIVE_ROUND_OFF = 1e-13
 RELATIVE_QUADRATURE_ERROR = 1e-4
 """The same under a density: kinks leave errors of this size in the energy, of which the gradient knows nothing."""
 
+LEAST_CURVATURE = 0.25
+"""Under a density, pairs with s.y below this part of s.s, over the number of cells, are not kept: quadrature gives
+neutral motions, such as rotations of a symmetric density, a curvature of this size."""
+
 WOLFE_FRACTION = 0.8
 
 PATIENCE = 100
@@ -83,13 +87,14 @@ class Limits:
 class ScvtResult:
     """Generators (n_cells, 3), their Delaunay triangles, the convergence history, and why the optimiser stopped.
 
-    `reason` is `tolerance`, `iterations`, `seconds` or `round-off`.
+    `reason` is `tolerance`, `iterations`, `seconds` or `round-off`; `fixed` (n_cells,) marks generators that were held.
     """
 
     points: Array
     triangles: Index
     history: History
     reason: str
+    fixed: NDArray[np.bool_] | None = None
 
 
 @dataclass(frozen=True)
@@ -153,10 +158,11 @@ class Optimizer:
         self._gradient_square = 0.0
         self._fixed = fixed
         self._evaluate: Callable[..., None] = evaluate
-        self._noise = RELATIVE_ROUND_OFF
+        self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
+        self._least_energy = np.inf
         if density is not None or fixed is not None:
             self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
-            self._noise = RELATIVE_QUADRATURE_ERROR
+            self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
         """Iterate until one of the `limits` is reached or round-off allows no further step."""
@@ -175,14 +181,26 @@ class Optimizer:
                 reason = "round-off"
             if reason is not None:
                 self._triangulation.update(state.points)
-                return ScvtResult(state.points, self._triangulation.triangles, history, reason)
+                return ScvtResult(state.points, self._triangulation.triangles, history, reason, self._fixed)
 
     def _step(self) -> bool:
-        """One iteration; False where no step is left, not even down the gradient."""
+        """One iteration; False where no step is left, not even down the gradient.
+
+        Under a density, whose energy is known to the error of its quadrature only, a step of Lloyd's method is left.
+        """
         if self._search_along_new_direction():
             return True
         self._memory.clear()
-        return self._search_along_new_direction()
+        if self._search_along_new_direction():
+            return True
+        if self._noise == RELATIVE_ROUND_OFF:
+            return False
+        slot = self._memory.spare_slot()
+        self._memory.steps[slot] = -self._current.gradient.ravel()
+        self._move(slot, 1.0)
+        self._evaluate_trial(self._memory.steps[slot])
+        self._accept(slot, 1.0)
+        return True
 
     def _search_along_new_direction(self) -> bool:
         """Halve the step until it is acceptable, and take it; False where none is."""
@@ -258,17 +276,22 @@ class Optimizer:
         state.residual = float(np.sqrt(2.0 * square / (root * (1.0 + root)))) / self._spacing
 
     def _acceptable(self, slope: float, length: float) -> bool:
-        """Whether the energy falls (Armijo) or, within round-off, the slope does (Hager and Zhang 2005, eq. (4.1))."""
-        rise = self._trial.energy - self._current.energy
-        if rise <= ARMIJO_FRACTION * length * slope:
+        """Whether the energy falls (Armijo) or, where its error hides that, the slope does.
+
+        The latter is the approximate Wolfe condition of Hager and Zhang (2005), equation (4.1); the energy must still
+        stay within its error of the least one so far.
+        """
+        if self._trial.energy - self._current.energy <= ARMIJO_FRACTION * length * slope:
             return True
-        return rise <= self._noise * self._current.energy and self._trial.slope <= -WOLFE_FRACTION * slope
+        ceiling = (1.0 + self._noise) * self._least_energy
+        return self._trial.energy <= ceiling and self._trial.slope <= -WOLFE_FRACTION * slope
 
     def _accept_start(self) -> None:
         """Make the first evaluated points the current ones."""
         self._current, self._trial = self._trial, self._current
         self._precondition(self._current)
         self._memory.clear()
+        self._least_energy = self._current.energy
         self._gradient_square = float(np.dot(self._current.gradient.ravel(), self._current.preconditioned.ravel()))
 
     def _accept(self, slot: int, length: float) -> None:
@@ -284,14 +307,15 @@ class Optimizer:
             length,
             partials,
         )
-        old_step, old_change = partials[:, :2].sum(axis=0)
+        old_step, old_change, step_step = partials[:, :3].sum(axis=0)
         old_dots = np.concatenate([memory.step_dots, [old_step], memory.change_dots, [old_change]])
         slots = np.append(memory.slots, slot)
         gradient, preconditioned = new.gradient.ravel(), new.preconditioned.ravel()
         all_dots(gradient, preconditioned, memory.steps, memory.changes, slots, partials)
         sums = partials[:, : 2 * len(slots) + 1].sum(axis=0)
-        memory.update(slot, old_dots, sums[:-1])
+        memory.update(slot, old_dots, sums[:-1], self._least_curvature * step_step)
         self._gradient_square = float(sums[-1])
+        self._least_energy = min(self._least_energy, new.energy)
         self._current, self._trial = new, old
 
     def _precondition(self, state: _State) -> None:

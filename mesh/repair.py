@@ -152,7 +152,7 @@ def _join(twins: Index, half_edge: int, twin: int) -> None:
 
 
 @numba.njit(cache=True)
-def _flip(triangles: Index, twins: Index, first_corner: Index, degrees: Index, half_edge: int, twin: int) -> None:
+def flip(triangles: Index, twins: Index, first_corner: Index, degrees: Index, half_edge: int, twin: int) -> None:
     """Turn the edge of two triangles t, u into the other diagonal (in place).
 
     Before: t = (c, a, b), u = (d, b, a).  After: t = (c, a, d), u = (d, b, c).
@@ -211,7 +211,7 @@ def _settle_edge(
         if flips >= limit or height + 4 > len(stack):
             return -1
         u = twin // 3
-        _flip(triangles, twins, first_corner, degrees, half_edge, twin)
+        flip(triangles, twins, first_corner, degrees, half_edge, twin)
         _place_circumcenter(points, triangles, t, circumcenters)
         _place_circumcenter(points, triangles, u, circumcenters)
         flips += 1
@@ -289,7 +289,7 @@ def untangle(
                     and degrees[b] > 3
                     and _opens_well(points, a, b, c, corners[twin])
                 ):
-                    _flip(triangles, twins, first_corner, degrees, 3 * triangle + k, twin)
+                    flip(triangles, twins, first_corner, degrees, 3 * triangle + k, twin)
                     flips += 1
                     break
     return flips

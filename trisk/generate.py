@@ -8,6 +8,7 @@ from pathlib import Path
 import typer
 
 from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh
+from mesh.arrays import Array, Index
 from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
 from mesh.density import Density
 from mesh.gridded_density import Shaping, find_density
@@ -15,6 +16,7 @@ from mesh.nested import nested_scvt
 from mesh.optimizer import Callback, Iterate, Limits, ScvtResult
 from mesh.scvt import Request, check_converged, generate_scvt, optimize
 from mesh.sphere import normalize
+from mesh.well_centered import GOAL, well_center
 from trisk.report import convergence_bar
 
 
@@ -30,6 +32,7 @@ class MeshOptions:
     seed: int
     method: str
     nested: Path | None
+    well_centered: bool
     limits: Limits
     resume: bool
     quiet: bool
@@ -59,7 +62,26 @@ def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
     density = options.find_density()
     with _progress(options, output) as callback:
         result = _nested(options, callback) if options.nested is not None else _from_start(options, output, callback)
-    return mesh_from_points(result.points, result.triangles, density, options.density)
+    points, triangles = result.points, result.triangles
+    if options.well_centered:
+        points, triangles = _well_centered(result, density, options.quiet)
+    return mesh_from_points(points, triangles, density, options.density)
+
+
+def _well_centered(result: ScvtResult, density: Density, quiet: bool) -> tuple[Array, Index]:
+    """Points and triangles without obtuse angles; tells the residual that they cost."""
+    better = well_center(result.points, result.triangles, density, result.fixed)
+    if better.least_quality < GOAL:
+        raise MeshError(
+            f"the mesh of {len(better.points)} cells keeps a triangle of quality {better.least_quality:.3f}, below "
+            f"{GOAL}; try another start or seed, or converge it further"
+        )
+    if not quiet:
+        typer.echo(
+            f"well-centred: the least triangle quality is {better.least_quality:.3f}, and the residual rose from "
+            f"{better.residual_before:.1e} to {better.residual:.1e} mean spacings"
+        )
+    return better.points, better.triangles
 
 
 def _from_start(options: MeshOptions, output: Path, callback: Callback) -> ScvtResult:
@@ -82,7 +104,13 @@ def _nested(options: MeshOptions, callback: Callback) -> ScvtResult:
     coarse = read_mesh(options.nested)
     density = options.find_density()
     return nested_scvt(
-        normalize(coarse.cell_points), coarse.cells_on_vertex, density, options.cells, options.limits, callback
+        normalize(coarse.cell_points),
+        coarse.cells_on_vertex,
+        density,
+        options.cells,
+        options.limits,
+        callback,
+        options.seed,
     )
 
 

@@ -59,6 +59,10 @@ def mesh(
     nested: Annotated[
         Path | None, typer.Option("--nested", help="Refine this mesh where the density asks for it, keep the rest.")
     ] = None,
+    well_centered: Annotated[
+        bool,
+        typer.Option("--well-centred", help="Trade a little centroidality for a mesh without obtuse triangles."),
+    ] = False,
     tolerance: Annotated[
         float | None,
         typer.Option(
@@ -81,7 +85,9 @@ def mesh(
         tolerance = 1e-8 if density == "uniform" else 1e-6
     limits = Limits(tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
-    options = MeshOptions(cells, density, density_variable, shaping, start, seed, method, nested, limits, resume, quiet)
+    options = MeshOptions(
+        cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet
+    )
     result = generate(options, output)
     write_mesh(result, output, history=_command_line())
     if not quiet:

@@ -59,6 +59,15 @@ def test_quality_as_json_and_as_table(trisk, mesh_file: Path) -> None:
     assert "1.164649" in out
 
 
+def test_table1(trisk) -> None:
+    code, out, _ = trisk("quality", "--table1", "--max-level", 3)
+    assert code == 0
+    assert "1.1646 0.9110 0.8586 0.9904 0.9729" in out
+    assert "1.1647 0.9174 0.8843 0.9872 0.9829" in out
+    assert trisk("quality", "--table1", "--max-level", 12)[0] == 2
+    assert trisk("quality")[0] == 2
+
+
 def test_run_generates_a_mesh_of_any_number(trisk, tmp_path: Path) -> None:
     code, _, _ = trisk("run", "williamson2", "--cells", 100, "--days", 0.5, "-o", tmp_path / "run", "-q")
     assert code == 0
@@ -153,6 +162,10 @@ def test_meshes_under_a_density(trisk, mesh_file: Path, tmp_path: Path) -> None:
     measured = json.loads(trisk("quality", output, "--json")[1])
     assert measured["residual"] < 1.1e-6
     assert measured["mu"] > 2.5
+    code, out, _ = trisk("mesh", "--cells", 642, "--density", "refined-circle", "--well-centred", "-o", output)
+    assert code == 0
+    assert "well-centred: the least triangle quality is 0.86" in out
+    assert json.loads(trisk("quality", output, "--json")[1])["obtuse"] == 0
     code, _, err = trisk("mesh", "--nested", mesh_file, "--density", "refined-box", "-o", output, "-q")
     assert (code, err) == (0, "")
     assert json.loads(trisk("quality", output, "--json")[1])["cells"] > 250
