@@ -9,11 +9,13 @@ from matplotlib.figure import Figure
 
 from mesh.build import mesh_from_points
 from mesh.density import NAMED
-from mesh.optimizer import History, Limits
+from mesh.moments import mean_spacing
+from mesh.optimizer import History, Limits, ScvtResult
 from mesh.quality import Quality, mesh_quality
 from mesh.scvt import Request, generate_scvt, optimize, starting_mesh
+from mesh.sphere import normalize
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.plots import DOTS_PER_INCH, draw_mollweide, draw_orthographic
+from postprocess.plots import draw_mollweide, draw_orthographic
 from postprocess.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures
 
 PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)
@@ -21,21 +23,28 @@ PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)
 
 MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
 LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
+PAGE_DOTS_PER_INCH = 80
 CIRCLE_CELLS = 2562
 OPTIMIZER_CELLS = 2562
 RANDOM_CELLS = 10242
 RANDOM_SEEDS = range(5)
+SHAKEN_SEEDS = range(3)
+SHAKE = 0.2
+"""Size of random displacements of a converged icosahedral mesh, in mean spacings."""
+
 STARTS = [("icosahedral", 0), ("fibonacci", 0)] + [
     (start, seed) for start in ("random", "random-root") for seed in range(3)
 ]
 OPTIMIZER_LIMITS = {
-    "lbfgs": Limits(1e-9),
-    "multilevel": Limits(1e-9),
-    "lloyd": Limits(1e-9, 400),
-    "probabilistic": Limits(1e-9, 40),
-    "macqueen": Limits(1e-9, 40),
+    "lbfgs": Limits(1e-8),
+    "multilevel": Limits(1e-8),
+    "lloyd": Limits(1e-8, 3000),
+    "probabilistic": Limits(1e-8, 60),
+    "macqueen": Limits(1e-8, 60),
 }
-"""How far each optimiser goes in the comparison; the random ones would never get there."""
+"""How far each optimiser goes in the comparison; the last three would need too long to get there."""
+
+ROUND_OFF = 1e-13
 
 Tell = Callable[[str], None]
 """Called with a line on what has been done."""
@@ -60,8 +69,12 @@ class Start:
 def converge_from(request: Request, density_name: str, tolerance: float) -> Start:
     """Converge one mesh and measure it."""
     result = generate_scvt(request, Limits(tolerance))
+    return _measured(request.start or "icosahedral", request, density_name, result)
+
+
+def _measured(start: str, request: Request, density_name: str, result: ScvtResult) -> Start:
     mesh = mesh_from_points(result.points, result.triangles, request.density, density_name)
-    return Start(request.start or "icosahedral", request.seed, mesh, mesh_quality(mesh), result.history)
+    return Start(start, request.seed, mesh, mesh_quality(mesh), result.history)
 
 
 def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
@@ -75,20 +88,34 @@ def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
 
 
 def random_meshes(tolerance: float, tell: Tell) -> list[Start]:
-    """Uniform meshes from random starts, the icosahedral one first."""
-    requests = [Request(RANDOM_CELLS)] + [Request(RANDOM_CELLS, "random", seed=seed) for seed in RANDOM_SEEDS]
-    meshes = []
-    for request in requests:
-        meshes.append(converge_from(request, "uniform", tolerance))
-        tell(f"{RANDOM_CELLS} cells from {meshes[-1].start} {request.seed}: {meshes[-1].dislocations} dislocations")
+    """Uniform meshes: the icosahedral one, those from it after a shake, and those from random points."""
+    meshes = [converge_from(Request(RANDOM_CELLS), "uniform", tolerance)]
+    for seed in SHAKEN_SEEDS:
+        meshes.append(_shaken(meshes[0], seed, tolerance))
+    for seed in RANDOM_SEEDS:
+        meshes.append(converge_from(Request(RANDOM_CELLS, "random", seed=seed), "uniform", tolerance))
+    for mesh in meshes:
+        tell(f"{RANDOM_CELLS} cells, {mesh.start} {mesh.seed}: {mesh.dislocations} dislocations")
     return meshes
 
 
+def _shaken(start: Start, seed: int, tolerance: float) -> Start:
+    """Displace all generators of a converged mesh at random and converge it again."""
+    points = start.mesh.cell_points
+    step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
+    request = Request(len(points), seed=seed)
+    result = optimize(normalize(points + step), None, request, Limits(tolerance))
+    return _measured("icosahedral, shaken", request, "uniform", result)
+
+
 def optimizer_histories(tell: Tell) -> dict[str, History]:
-    """Histories of all optimisers from the bisected icosahedron; that of the multilevel method is its finest level."""
+    """Histories of all optimisers from the same random points.
+
+    The multilevel method has its own start; its history is that of its finest level.
+    """
     histories = {}
     for method, limits in OPTIMIZER_LIMITS.items():
-        request = Request(OPTIMIZER_CELLS, method=method)
+        request = Request(OPTIMIZER_CELLS, None if method == "multilevel" else "random", method)
         if method == "multilevel":
             histories[method] = generate_scvt(request, limits).history
         else:
@@ -101,21 +128,21 @@ def optimizer_figure(histories: dict[str, History]) -> Figure:
     """Residual, and energy above the lowest that any reached, against iteration and time."""
     figure = Figure(figsize=(11.0, 7.0), layout="constrained")
     panels = figure.subplots(2, 2, sharex="col", sharey="row")
-    lowest = min(min(history.energy) for history in histories.values())
     for method, history in histories.items():
-        above = np.maximum(np.array(history.energy) - lowest, 1e-17)
+        above = np.array(history.energy) / min(history.energy) - 1.0
+        above[above <= ROUND_OFF] = np.nan
         iterations, seconds = np.arange(len(above)) + 1, np.maximum(history.seconds, 1e-3)
         for column, x in enumerate((iterations, seconds)):
             panels[0, column].loglog(x, history.residual, label=method)
             panels[1, column].loglog(x, above, label=method)
     panels[0, 0].set_ylabel("residual (mean spacings)")
-    panels[1, 0].set_ylabel("energy above the lowest (rad² sr)")
+    panels[1, 0].set_ylabel("energy over its own minimum, less one")
     panels[1, 0].set_xlabel("iteration, counted from 1")
     panels[1, 1].set_xlabel("time (s)")
     panels[0, 1].legend()
     for axes in panels.flat:
         axes.grid(alpha=0.3)
-    figure.suptitle(f"Optimisers from the bisected icosahedron, {OPTIMIZER_CELLS} cells")
+    figure.suptitle(f"Optimisers from random points (multilevel: icosahedral), {OPTIMIZER_CELLS} cells")
     return figure
 
 
@@ -210,5 +237,5 @@ def starts_lines(meshes: list[Start]) -> list[str]:
 
 def save(figure: Figure, folder: Path, name: str) -> str:
     """Write a figure and give the Markdown that shows it."""
-    figure.savefig(folder / f"{name}.png", dpi=DOTS_PER_INCH * 2 // 3)
+    figure.savefig(folder / f"{name}.png", dpi=PAGE_DOTS_PER_INCH)
     return f"![{name.replace('-', ' ')}]({name}.png)"

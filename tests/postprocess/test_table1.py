@@ -1,0 +1,59 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesh.density import NAMED
+from mesh.scvt import Request
+from postprocess import mesh_report
+from postprocess.mesh_report import Start, converge_from, distribution_figure, sizes_figure, starts_lines, table1_lines
+from postprocess.table1 import PUBLISHED_SCVT, Row, measures, table1
+from swe.errors import SetupError
+
+
+@pytest.fixture(scope="module")
+def rows() -> list[Row]:
+    return table1(5, 1e-6)
+
+
+def test_converged_rows_agree_with_the_published_ones_but_for_their_slips(rows: list[Row]) -> None:
+    assert [row.level for row in rows] == [2, 3, 4, 5]
+    for row in rows:
+        assert row.scvt.residual <= 1e-6
+        ours, published = np.array(measures(row.scvt)), np.array(PUBLISHED_SCVT[row.level])
+        agree = np.abs(ours - published) < 1.01e-4
+        if row.level in (2, 5):
+            assert agree.all()
+        else:
+            assert not agree.all()
+    assert rows[2].scvt.mu == pytest.approx(1.1965, abs=1e-4)  # printed as 1.1592
+
+
+def test_table_in_markdown_has_a_pair_of_lines_for_each_level(rows: list[Row]) -> None:
+    lines = table1_lines(rows)
+    assert len(lines) == 2 + 2 * len(rows)
+    assert {line.count("|") for line in lines} == {9}
+
+
+def test_levels_beyond_the_table_are_refused() -> None:
+    with pytest.raises(SetupError, match="level 10 is not in Table 1"):
+        table1(10, 1e-6)
+
+
+@pytest.fixture(scope="module")
+def meshes() -> list[Start]:
+    density = NAMED["refined-circle"]
+    return [converge_from(Request(300, "random", density=density, seed=k), "refined-circle", 1e-4) for k in (0, 1)]
+
+
+def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> None:
+    lines = starts_lines(meshes)
+    assert len(lines) == 4
+    assert {line.count("|") for line in lines} == {13}
+    assert all(mesh.dislocations >= 0 for mesh in meshes)
+    shown = mesh_report.save(distribution_figure(meshes, (1.0,) * 5, "Title"), tmp_path, "starts")
+    assert shown == "![starts](starts.png)"
+    assert (tmp_path / "starts.png").stat().st_size > 5000
+    left, right = sizes_figure({"one": meshes[0].mesh}).axes
+    assert left.get_lines()[0].get_ydata()[0] < left.get_lines()[0].get_ydata()[-1]
+    assert np.mean(right.get_lines()[0].get_ydata()) == pytest.approx(1.0)
