@@ -47,6 +47,9 @@ WOLFE_FRACTION = 0.8
 PATIENCE = 100
 """Iterations in which neither energy nor residual fall any more before the descent counts as ended by round-off."""
 
+PATIENCE_UNDER_DENSITY = 1000
+"""The same under a density, where the energy may rise by its error for a while."""
+
 
 @dataclass
 class History:
@@ -159,10 +162,11 @@ class Optimizer:
         self._fixed = fixed
         self._evaluate: Callable[..., None] = evaluate
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
-        self._least_energy = np.inf
+        self._least_energy, self._patience = np.inf, PATIENCE
         if density is not None or fixed is not None:
             self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
+            self._patience = PATIENCE_UNDER_DENSITY
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
         """Iterate until one of the `limits` is reached or round-off allows no further step."""
@@ -177,7 +181,7 @@ class Optimizer:
             if callback is not None:
                 callback(Iterate(history.iterations, state.residual, state.energy, state.points))
             reason = limits.reason_to_stop(history)
-            if reason is None and (_stagnates(history) or not self._step()):
+            if reason is None and (_stagnates(history, self._patience) or not self._step()):
                 reason = "round-off"
             if reason is not None:
                 self._triangulation.update(state.points)
@@ -325,10 +329,10 @@ class Optimizer:
                 state.preconditioned[self._fixed] = 0.0
 
 
-def _stagnates(history: History) -> bool:
+def _stagnates(history: History, patience: int) -> bool:
     """Whether the last iterations lowered the energy by no more than round-off and the residual by less than half."""
-    if history.iterations < PATIENCE:
+    if history.iterations < patience:
         return False
-    fall = history.energy[-1 - PATIENCE] - history.energy[-1]
+    fall = history.energy[-1 - patience] - history.energy[-1]
     lost_in_round_off = fall <= RELATIVE_ROUND_OFF * history.energy[-1]
-    return lost_in_round_off and min(history.residual[-PATIENCE:]) > 0.5 * min(history.residual[:-PATIENCE])
+    return lost_in_round_off and min(history.residual[-patience:]) > 0.5 * min(history.residual[:-patience])

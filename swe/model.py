@@ -97,10 +97,6 @@ class ShallowWaterModel:
             kinetic_energy=self._kinetic_energy.copy(),
         )
 
-    def gravity_wave_speed(self, state: State) -> float:
-        """Largest speed of gravity waves, sqrt(g h), m/s."""
-        return float(np.sqrt(self.gravity * state.thickness.max()))
-
     def courant_number(self, state: State, time_step: float) -> float:
         """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
 

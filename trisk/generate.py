@@ -37,10 +37,6 @@ class MeshOptions:
     resume: bool
     quiet: bool
 
-    def find_density(self) -> Density:
-        """The density that the options name."""
-        return find_density(self.density, self.density_variable, self.shaping)
-
     @property
     def description(self) -> dict[str, object]:
         """What determines the generation, for its checkpoint."""
@@ -59,9 +55,12 @@ def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
     """The mesh that the options ask for; an interrupted generation leaves a checkpoint beside `output`."""
     if not output.parent.is_dir():
         raise MeshError(f"{output}: cannot be written, as there is no folder {output.parent}; choose another place")
-    density = options.find_density()
+    density = find_density(options.density, options.density_variable, options.shaping)
     with _progress(options, output) as callback:
-        result = _nested(options, callback) if options.nested is not None else _from_start(options, output, callback)
+        if options.nested is None:
+            result = _from_start(options, density, output, callback)
+        else:
+            result = _nested(options.nested, options, density, callback)
     points, triangles = result.points, result.triangles
     if options.well_centered:
         points, triangles = _well_centered(result, density, options.quiet)
@@ -84,10 +83,9 @@ def _well_centered(result: ScvtResult, density: Density, quiet: bool) -> tuple[A
     return better.points, better.triangles
 
 
-def _from_start(options: MeshOptions, output: Path, callback: Callback) -> ScvtResult:
+def _from_start(options: MeshOptions, density: Density, output: Path, callback: Callback) -> ScvtResult:
     if options.cells is None:
         raise MeshError("the number of cells is missing; give --cells N")
-    density = options.find_density()
     request = Request(options.cells, options.start, options.method, density, options.seed)
     if not options.resume:
         return generate_scvt(request, options.limits, callback)
@@ -97,21 +95,12 @@ def _from_start(options: MeshOptions, output: Path, callback: Callback) -> ScvtR
     return result
 
 
-def _nested(options: MeshOptions, callback: Callback) -> ScvtResult:
+def _nested(coarse_file: Path, options: MeshOptions, density: Density, callback: Callback) -> ScvtResult:
     if options.resume:
         raise MeshError("a nested mesh keeps no checkpoint; start without --resume")
-    assert options.nested is not None
-    coarse = read_mesh(options.nested)
-    density = options.find_density()
-    return nested_scvt(
-        normalize(coarse.cell_points),
-        coarse.cells_on_vertex,
-        density,
-        options.cells,
-        options.limits,
-        callback,
-        options.seed,
-    )
+    coarse = read_mesh(coarse_file)
+    points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
+    return nested_scvt(points, triangles, density, options.cells, options.limits, callback, options.seed)
 
 
 @contextmanager
