@@ -16,8 +16,13 @@ from mesh.topology import build_topology
 from mesh.validate import validate_mesh
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
 
-DEFAULT_TOLERANCE = 1e-8
-"""Centroid residual, in mean spacings, at which an SCVT counts as converged."""
+UNIFORM_TOLERANCE, VARIABLE_TOLERANCE = 1e-8, 1e-6
+"""Centroid residuals, in mean spacings, at which an SCVT counts as converged."""
+
+
+def default_tolerance(density: str | Density) -> float:
+    """The residual to ask for under a density: quadrature does not allow as small a one as uniform density does."""
+    return UNIFORM_TOLERANCE if density in ("uniform", uniform) else VARIABLE_TOLERANCE
 
 
 def mesh_from_points(
@@ -55,18 +60,20 @@ def scvt_mesh(
     density: str | Density = "uniform",
     start: str | None = None,
     method: str = "lbfgs",
-    tolerance: float = DEFAULT_TOLERANCE,
+    tolerance: float | None = None,
     max_iterations: int = 10_000,
     seed: int = DEFAULT_SEED,
     callback: Callback | None = None,
 ) -> VoronoiMesh:
     """A validated SCVT on the unit sphere; see `mesh.scvt.Request` for the arguments.
 
-    `density` is a name, the name of a NetCDF file, or any callable (see `mesh.density`). Starts from the bisected
+    `density` is a name, the name of a NetCDF file, or any callable (see `mesh.density`), and decides on the tolerance
+    where none is given. Starts from the bisected
     icosahedron where that has this number of cells, else from the Fibonacci spiral.
     """
     name = density if isinstance(density, str) else ""
     function = find_density(density) if isinstance(density, str) else density
     request = Request(cells, start, method, function, seed)
-    result = generate_scvt(request, Limits(tolerance, max_iterations), callback)
+    limits = Limits(default_tolerance(density) if tolerance is None else tolerance, max_iterations)
+    result = generate_scvt(request, limits, callback)
     return mesh_from_points(result.points, result.triangles, function, name)

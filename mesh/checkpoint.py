@@ -64,7 +64,7 @@ def load_checkpoint(path: Path, description: Mapping[str, object]) -> Array:
             points, stored = file["points"], json.loads(str(file["description"]))
     except FileNotFoundError as error:
         raise MeshError(f"{path}: there is no checkpoint to resume from; start without --resume") from error
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise MeshError(f"{path}: not a readable checkpoint ({error}); remove it and start anew") from error
     for name, value in description.items():
         if stored.get(name) != value:

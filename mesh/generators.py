@@ -9,7 +9,7 @@ from mesh.errors import MeshError
 from mesh.half_edges import build_twins
 from mesh.sphere import normalize
 
-MINIMUM_CELLS = 12
+MINIMUM_CELLS, MAXIMUM_CELLS = 12, (2**31 - 1) // 6
 STARTS = ("icosahedral", "fibonacci", "random", "random-root")
 DEFAULT_SEED = 0
 
@@ -131,6 +131,8 @@ def starting_points(
     """
     if cells < MINIMUM_CELLS:
         raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {MINIMUM_CELLS}")
+    if cells > MAXIMUM_CELLS:
+        raise MeshError(f"a mesh of {cells} cells has too many half-edges to number; ask for at most {MAXIMUM_CELLS}")
     level = icosahedral_level(cells)
     if start is None:
         start = "fibonacci" if level is None else "icosahedral"

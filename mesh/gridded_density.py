@@ -75,21 +75,25 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
     shaping = Shaping() if shaping is None else shaping
     try:
         with netCDF4.Dataset(path) as file:
-            file.set_auto_mask(False)
             if variable not in file.variables:
                 raise MeshError(f"{path}: there is no variable named {variable}; name the field {DENSITY_VARIABLE}")
             field = file[variable]
             if field.dimensions == ("nCells",):
-                return _density_on_mesh(file, np.asarray(field[:], dtype=float), shaping, path)
+                return _density_on_mesh(file, _values(field, shaping, path), shaping, path)
             return _density_on_grid(file, field, shaping, path)
-    except OSError as error:
+    except (OSError, RuntimeError) as error:
         raise MeshError(f"{path}: not a readable NetCDF file ({error}); give one with a density") from error
 
 
-def _check_finite(values: Array, path: str | Path) -> None:
+def _values(field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Array:
+    """Values of a field, none of them missing, and none negative where no floor has been asked for."""
+    values = np.ma.filled(np.ma.asarray(field[:]).astype(float), np.nan)
     wrong = np.count_nonzero(~np.isfinite(values))
     if wrong:
-        raise MeshError(f"{path}: {wrong} values of the density are not finite; fill them first")
+        raise MeshError(f"{path}: {wrong} values of {field.name} are missing or not finite; fill them first")
+    if values.min() < 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{path}: {field.name} falls to {values.min():g}; a density is not negative, give it a floor")
+    return values
 
 
 def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Density:
@@ -101,12 +105,14 @@ def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Sh
             "and lon in degrees, or on nCells"
         )
     latitude, longitude = (np.radians(np.asarray(file[name][:]).astype(float)) for name in names)
-    values = np.asarray(field[:], dtype=float)
+    values = _values(field, shaping, path)
     if values.shape != (len(latitude), len(longitude)):
         raise MeshError(f"{path}: {field.name} has shape {values.shape} instead of (lat, lon)")
-    _check_finite(values, path)
-    rows, columns = np.argsort(latitude), np.argsort(longitude % (2.0 * np.pi))
-    latitude, longitude = latitude[rows], longitude[columns] % (2.0 * np.pi)
+    if field.dimensions != tuple(file[name].dimensions[0] for name in names):
+        raise MeshError(f"{path}: {field.name} has dimensions {field.dimensions}; order them as (lat, lon)")
+    # Both ends of a full circle are one meridian.
+    latitude, rows = np.unique(latitude, return_index=True)
+    longitude, columns = np.unique(np.round(longitude % (2.0 * np.pi), 12) % (2.0 * np.pi), return_index=True)
     values = shaping.apply(values[np.ix_(rows, columns)], _smooth_grid)
     # One column more on each side makes the grid periodic.
     longitude = np.concatenate([longitude[-1:] - 2.0 * np.pi, longitude, longitude[:1] + 2.0 * np.pi])
@@ -130,7 +136,6 @@ def _smooth_grid(values: Array) -> Array:
 def _density_on_mesh(file: netCDF4.Dataset, values: Array, shaping: Shaping, path: str | Path) -> Density:
     if not all(name in file.variables for name in ("xCell", "yCell", "zCell")):
         raise MeshError(f"{path}: a density on nCells needs xCell, yCell and zCell in the same file")
-    _check_finite(values, path)
     centers = normalize(np.stack([np.asarray(file[f"{axis}Cell"][:]).astype(float) for axis in "xyz"], axis=1))
     neighbours = cKDTree(centers).query(centers, k=SMOOTHING_NEIGHBOURS + 1)[1][:, 1:]
     shaped = shaping.apply(values, lambda field: 0.5 * field + 0.5 * field[neighbours].mean(axis=1))

@@ -42,8 +42,9 @@ def write_mesh(mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "
         with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
             file.setncatts(mesh_attributes(mesh, history))
             write_mesh_variables(file, mesh)
-    except OSError as error:
-        raise MeshError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+    except (OSError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
 
 
 def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:

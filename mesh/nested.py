@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.density import Density
+from mesh.density import Density, check_density
 from mesh.errors import MeshError
 from mesh.generators import DEFAULT_SEED, fibonacci_points
 from mesh.optimizer import Callback, Limits, Optimizer, ScvtResult
@@ -53,7 +53,11 @@ def nested_scvt(
     take, or where the tolerance is not reached.
     """
     limits = Limits() if limits is None else limits
-    ratio = _Refinement(density, float(density(points).min()))
+    values = density(points)
+    check_density(values, points)
+    if not values.min() > 0.0:
+        raise MeshError("the density is zero at a generator of the mesh to refine; give it a floor above zero")
+    ratio = _Refinement(density, float(values.min()))
     cells = ratio.natural_number(len(points)) if cells is None else cells
     if cells <= len(points):
         raise MeshError(

@@ -36,7 +36,7 @@ def reseed(
             break
         near = near_bad_triangles(result.points, result.triangles, wanted, SHAKEN_RINGS) & ~fixed
         other = converge(_shaken(result.points, result.triangles, near, generator))
-        if _shortfall(other, wanted) < lacking:
+        if other.reason == result.reason and _shortfall(other, wanted) < lacking:
             result, lacking = other, _shortfall(other, wanted)
     return result
 

@@ -7,7 +7,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.density import Density, uniform
 from mesh.errors import MeshError
-from mesh.generators import DEFAULT_SEED, bisect, icosahedral_level, icosahedral_mesh, starting_points
+from mesh.generators import DEFAULT_SEED, MAXIMUM_CELLS, bisect, icosahedral_level, icosahedral_mesh, starting_points
 from mesh.optimizer import Callback, Limits, Optimizer, ScvtResult
 from mesh.ordering import hilbert_order, renumber
 from mesh.probabilistic import MACQUEEN, Weights, probabilistic_lloyd
@@ -92,7 +92,7 @@ def check_converged(result: ScvtResult, limits: Limits) -> None:
 def starting_mesh(request: Request) -> tuple[Array, Index | None]:
     """Starting points along a space-filling curve, and their triangles where bisection gives them."""
     level = icosahedral_level(request.cells) if request.start in (None, "icosahedral") else None
-    if level is not None:
+    if level is not None and request.cells <= MAXIMUM_CELLS:
         return renumber(*icosahedral_mesh(level))
     points = starting_points(request.cells, request.start, request.density, request.seed)
     return np.ascontiguousarray(points[hilbert_order(points)]), None
@@ -108,7 +108,8 @@ def _multilevel_start(request: Request, limits: Limits) -> tuple[Array, Index]:
         )
     points, triangles = renumber(*icosahedral_mesh(min(COARSEST_LEVEL, level)))
     for _ in range(COARSEST_LEVEL, level):
-        coarse = optimize(points, triangles, request, Limits(max(COARSE_TOLERANCE, limits.tolerance)))
+        loose = Limits(max(COARSE_TOLERANCE, limits.tolerance), limits.iterations, limits.seconds)
+        coarse = optimize(points, triangles, request, loose)
         refined, children, _ = bisect(coarse.points, coarse.triangles)
         points, triangles = renumber(refined, children)
     return points, triangles

@@ -2,21 +2,20 @@
 
 from pathlib import Path
 
-from mesh.build import mesh_from_points
 from mesh.density import NAMED
 from mesh.nested import nested_scvt
 from mesh.optimizer import Limits
-from mesh.quality import mesh_quality
 from mesh.scvt import Request, generate_scvt
-from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.mesh_report import (
     CIRCLE_CELLS,
     PUBLISHED_CIRCLE,
     RANDOM_CELLS,
     SHAKE,
+    Start,
     Tell,
     circle_meshes,
     distribution_figure,
+    measured,
     meshes_figure,
     optimizer_figure,
     optimizer_histories,
@@ -26,39 +25,45 @@ from postprocess.mesh_report import (
     starts_lines,
     table1_lines,
 )
-from postprocess.table1 import Row, measures
+from postprocess.table1 import Row
 
 PAGE = "README.md"
 NESTED_CELLS = 5781
 PUBLISHED_NESTED = (5.7079, 0.9006, 0.4012, 0.9904, 0.7114)
 """Ju, Ringler and Gunzburger (2011): the mesh of equation (13)."""
 
+NESTED_STARTS = (("icosahedral", 0), ("fibonacci", 0), ("random", 0), ("random", 1))
+
 UNIFORM_TOLERANCE = 1e-6
 VARIABLE_TOLERANCE = 1e-6
 
 
-def nested_mesh() -> VoronoiMesh:
-    """The nested mesh of equation (13), from a converged one of 2562 cells."""
-    coarse = generate_scvt(Request(2562))
+def nested_meshes(tell: Tell) -> list[Start]:
+    """Nested meshes of equation (13), from converged ones of 2562 cells with several starts, the icosahedral first."""
     box = NAMED["refined-box"]
-    result = nested_scvt(coarse.points, coarse.triangles, box, NESTED_CELLS, Limits(VARIABLE_TOLERANCE))
-    return mesh_from_points(result.points, result.triangles, box, "refined-box")
+    meshes = []
+    for start, seed in NESTED_STARTS:
+        coarse = generate_scvt(Request(2562, start, seed=seed))
+        request = Request(NESTED_CELLS, density=box, seed=seed)
+        limits = Limits(VARIABLE_TOLERANCE)
+        result = nested_scvt(coarse.points, coarse.triangles, box, NESTED_CELLS, limits, seed=seed)
+        meshes.append(measured(start, request, "refined-box", result))
+        tell(f"nested mesh from {start} {seed}: least q {meshes[-1].quality.q_min:.4f}")
+    return meshes
 
 
 def write_page(folder: Path, rows: list[Row], tell: Tell) -> Path:
     """Make everything but Table 1, whose `rows` are given, and write page and figures to `folder`."""
     folder.mkdir(parents=True, exist_ok=True)
     circles = circle_meshes(VARIABLE_TOLERANCE, tell)
-    nested = nested_mesh()
-    tell(f"nested mesh of {nested.n_cells} cells")
+    nested = nested_meshes(tell)
     random = random_meshes(UNIFORM_TOLERANCE, tell)
     histories = optimizer_histories(tell)
     shown = {
         f"uniform, {random[0].mesh.n_cells} cells": random[0].mesh,
         f"refined-circle, {CIRCLE_CELLS} cells": circles[0].mesh,
-        f"nested refined-box, {NESTED_CELLS} cells": nested,
+        f"nested refined-box, {NESTED_CELLS} cells": nested[0].mesh,
     }
-    nested_values = ", ".join(f"{value:.4f}" for value in measures(mesh_quality(nested)))
     published = ", ".join(f"{value:.4f}" for value in PUBLISHED_NESTED)
     text = f"""# Mesh generation: quality and convergence
 
@@ -89,8 +94,13 @@ local minima:
 
 {save(distribution_figure(circles, PUBLISHED_CIRCLE, "Refined-circle over starts"), folder, "refined-circle-starts")}
 
-Nested, equation (13), {NESTED_CELLS} cells, generators beyond the transition held fixed:
-{nested_values}; published: {published}.
+Nested, equation (13), {NESTED_CELLS} cells, generators beyond the transition held fixed, from converged meshes of 2562
+cells with several starts (published: {published}). The residual counts the fixed generators too, which
+are not centroids where the transition begins; the others are converged to {VARIABLE_TOLERANCE:g}:
+
+{chr(10).join(starts_lines(nested))}
+
+{save(distribution_figure(nested, PUBLISHED_NESTED, "Nested refined-box over starts"), folder, "nested-starts")}
 
 ## Random starts and the icosahedron
 

@@ -69,10 +69,11 @@ class Start:
 def converge_from(request: Request, density_name: str, tolerance: float) -> Start:
     """Converge one mesh and measure it."""
     result = generate_scvt(request, Limits(tolerance))
-    return _measured(request.start or "icosahedral", request, density_name, result)
+    return measured(request.start or "icosahedral", request, density_name, result)
 
 
-def _measured(start: str, request: Request, density_name: str, result: ScvtResult) -> Start:
+def measured(start: str, request: Request, density_name: str, result: ScvtResult) -> Start:
+    """The mesh of a result with its quality."""
     mesh = mesh_from_points(result.points, result.triangles, request.density, density_name)
     return Start(start, request.seed, mesh, mesh_quality(mesh), result.history)
 
@@ -105,7 +106,7 @@ def _shaken(start: Start, seed: int, tolerance: float) -> Start:
     step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
     request = Request(len(points), seed=seed)
     result = optimize(normalize(points + step), None, request, Limits(tolerance))
-    return _measured("icosahedral, shaken", request, "uniform", result)
+    return measured("icosahedral, shaken", request, "uniform", result)
 
 
 def optimizer_histories(tell: Tell) -> dict[str, History]:

@@ -25,17 +25,12 @@ class Snapshot:
 
 @dataclass(frozen=True)
 class Run:
-    """A run directory: its mesh in metres, the record of the run and the series of diagnostics by name."""
+    """A run directory: its mesh in metres, the name of the case and the series of diagnostics by name."""
 
     directory: Path
     mesh: VoronoiMesh
-    record: dict
+    case: str
     series: dict[str, Array]
-
-    @property
-    def case(self) -> str:
-        """Name of the test case."""
-        return str(self.record["case"])
 
     def last_snapshot(self) -> Snapshot:
         """The last snapshot in the history file."""
@@ -52,6 +47,8 @@ def read_run(directory: Path) -> Run:
     try:
         record = json.loads((directory / RECORD_FILE).read_text())
         series = read_series(directory / DIAGNOSTICS_FILE)
-        return Run(directory, read_mesh(directory / MESH_FILE), record, series)
-    except (OSError, json.JSONDecodeError, IndexError, KeyError) as error:
+        run = Run(directory, read_mesh(directory / MESH_FILE), str(record["case"]), series)
+        run.last_snapshot()
+        return run
+    except (OSError, json.JSONDecodeError, IndexError, KeyError, TypeError) as error:
         raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -15,6 +16,7 @@ from mesh.files import written_aside
 from mesh.io import mesh_attributes, write_mesh_variables
 from mesh.operators import velocity_at_cells
 from mesh.voronoi_mesh import VoronoiMesh
+from swe.errors import RunError
 from swe.invariants import Changes, Invariants
 from swe.model import ShallowWaterModel
 from swe.state import State
@@ -87,18 +89,23 @@ class _TimeFile:
     """A file that grows along time, complete after every row."""
 
     def __init__(self, path: Path) -> None:
+        self._path = path
         self._file = netCDF4.Dataset(path, "r+")
 
     def _append(self, time: float, values: Mapping[str, Array | float]) -> None:
-        row = len(self._file.dimensions["Time"])
-        for name, value in values.items():
-            self._file[name][row] = value
-        self._file["time"][row] = time
-        self._file.sync()
+        try:
+            row = len(self._file.dimensions["Time"])
+            for name, value in values.items():
+                self._file[name][row] = value
+            self._file["time"][row] = time
+            self._file.sync()
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{self._path} cannot be written ({error}); is the disk full?") from error
 
     def close(self) -> None:
-        """Close the file."""
-        self._file.close()
+        """Close the file; a failure to do so has shown itself before."""
+        with suppress(OSError, RuntimeError):
+            self._file.close()
 
 
 class HistoryFile(_TimeFile):

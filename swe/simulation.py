@@ -138,7 +138,9 @@ class Simulation:
         self.initial_courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = measure_invariants(self.model, self.state)
         self._stepper = RungeKutta(self.model.tendency, self.state)
-        self._directory = None if output is None else _prepare_directory(Path(output), overwrite)
+        self._directory = None if output is None else Path(output)
+        if self._directory is not None:
+            _check_directory(self._directory, overwrite)
 
     @property
     def invariants(self) -> Invariants:
@@ -169,7 +171,7 @@ class Simulation:
             except BaseException as error:
                 recorder.end("interrupted" if isinstance(error, KeyboardInterrupt) else "failed", str(error))
                 raise
-        recorder.end("completed")
+            recorder.end("completed")
 
     def _advance_to(self, event: float, bar: ProgressBar) -> None:
         """Step until `event`, seconds, is reached exactly."""
@@ -190,8 +192,10 @@ class Simulation:
 
     def _problem_with_state(self) -> str | None:
         """What is wrong with the state, as the end of a sentence; None if nothing is."""
-        h = self.state.thickness
-        # A velocity that is not finite makes the thickness so within one step.
+        h, u = self.state.thickness, self.state.normal_velocity
+        if not np.isfinite(u.sum()):
+            edge = int(np.argmax(~np.isfinite(u)))
+            return f"normal velocity is {u[edge]:g} m/s at edge {edge} (counted from 0)"
         if h.min() > 0.0 and np.isfinite(h.max()):
             return None
         cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
@@ -218,6 +222,10 @@ class _Recorder:
         if self.directory is None:
             return
         simulation = self.simulation
+        try:
+            self.directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise RunError(f"{self.directory} cannot be made: {error.strerror or error}") from error
         self._write_status("running")
         starting = simulation.steps == 0
         if starting:
@@ -250,7 +258,7 @@ class _Recorder:
         for file in (self.history, self.diagnostics):
             if file is not None:
                 file.close()
-        if self.directory is not None:
+        if self.directory is not None and self.directory.is_dir():
             self._write_status(status, reason)
 
     def _write_status(self, status: str, reason: str = "") -> None:
@@ -292,13 +300,10 @@ def _require_positive(what: str, value: float) -> None:
         raise SetupError(f"{what} is {value:g} s; it must be positive")
 
 
-def _prepare_directory(directory: Path, overwrite: bool) -> Path:
-    """Make the run directory; raise `SetupError` where it holds a run already or cannot be made."""
+def _check_directory(directory: Path, overwrite: bool) -> None:
+    """Raise `SetupError` where a run directory holds a run already or cannot be made or written to."""
     if (directory / RECORD_FILE).exists() and not overwrite:
-        raise SetupError(f"{directory} holds a run already; choose another directory or overwrite it")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-        (directory / RECORD_FILE).unlink(missing_ok=True)
-    except OSError as error:
-        raise SetupError(f"{directory} cannot be used as a run directory: {error.strerror or error}") from error
-    return directory
+        raise SetupError(f"{directory} holds a run already; choose another directory, or overwrite it (--force)")
+    existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK):
+        raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import typer
 
-from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh
+from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh, write_mesh
 from mesh.arrays import Array, Index
 from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
 from mesh.density import Density
@@ -51,20 +51,24 @@ class MeshOptions:
         }
 
 
-def generate(options: MeshOptions, output: Path) -> VoronoiMesh:
-    """The mesh that the options ask for; an interrupted generation leaves a checkpoint beside `output`."""
-    if not output.parent.is_dir():
-        raise MeshError(f"{output}: cannot be written, as there is no folder {output.parent}; choose another place")
+def generate(options: MeshOptions, output: Path, history: str) -> VoronoiMesh:
+    """Write the mesh that the options ask for; a generation that fails or is interrupted leaves a checkpoint."""
+    if not output.parent.is_dir() or output.is_dir():
+        raise MeshError(f"{output}: cannot be written, as there is no such folder or it is one; choose another place")
+    if options.nested is not None and (options.start, options.method, options.resume) != (None, "lbfgs", False):
+        raise MeshError("--start, --method and --resume do not go with --nested, which starts from that mesh")
     density = find_density(options.density, options.density_variable, options.shaping)
     with _progress(options, output) as callback:
         if options.nested is None:
             result = _from_start(options, density, output, callback)
         else:
             result = _nested(options.nested, options, density, callback)
-    points, triangles = result.points, result.triangles
-    if options.well_centered:
-        points, triangles = _well_centered(result, density, options.quiet)
-    return mesh_from_points(points, triangles, density, options.density)
+        points, triangles = result.points, result.triangles
+        if options.well_centered:
+            points, triangles = _well_centered(result, density, options.quiet)
+        mesh = mesh_from_points(points, triangles, density, options.density)
+        write_mesh(mesh, output, history)
+    return mesh
 
 
 def _well_centered(result: ScvtResult, density: Density, quiet: bool) -> tuple[Array, Index]:
@@ -96,8 +100,6 @@ def _from_start(options: MeshOptions, density: Density, output: Path, callback: 
 
 
 def _nested(coarse_file: Path, options: MeshOptions, density: Density, callback: Callback) -> ScvtResult:
-    if options.resume:
-        raise MeshError("a nested mesh keeps no checkpoint; start without --resume")
     coarse = read_mesh(coarse_file)
     points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
     return nested_scvt(points, triangles, density, options.cells, options.limits, callback, options.seed)

@@ -52,7 +52,7 @@ def mesh(
         str | None,
         typer.Option("--start", help="icosahedral, fibonacci, random or random-root; the first where it exists."),
     ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.")] = 0,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.", min=0)] = 0,
     method: Annotated[
         str, typer.Option("--method", help="lbfgs, lloyd, multilevel, probabilistic or macqueen.")
     ] = "lbfgs",
@@ -75,21 +75,20 @@ def mesh(
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh import write_mesh
+    from mesh.build import default_tolerance
     from mesh.gridded_density import Shaping
     from mesh.optimizer import Limits
     from trisk.generate import MeshOptions, generate
     from trisk.report import print_quality
 
     if tolerance is None:
-        tolerance = 1e-8 if density == "uniform" else 1e-6
+        tolerance = default_tolerance(density)
     limits = Limits(tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
     options = MeshOptions(
         cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet
     )
-    result = generate(options, output)
-    write_mesh(result, output, history=_command_line())
+    result = generate(options, output, history=_command_line())
     if not quiet:
         print_quality(result, str(output))
 
@@ -114,6 +113,10 @@ def quality(
 
     if (file is None) != table1:
         raise typer.BadParameter("give either a mesh file or --table1")
+    if table1 and (as_json or recompute_metrics):
+        raise typer.BadParameter("--json and --recompute-metrics go with a mesh file")
+    if output is not None and not table1:
+        raise typer.BadParameter("--output goes with --table1")
     if file is None:
         print_table1(max_level, output)
         return
@@ -153,6 +156,8 @@ def run(
     chosen = find_case(case)
     if (mesh_file is None) == (cells is None):
         raise typer.BadParameter("give either --mesh FILE or --cells N")
+    if recompute_metrics and mesh_file is None:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     if mesh_file is not None:
         used = read_mesh(mesh_file, recompute_metrics)
     else:

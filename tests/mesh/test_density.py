@@ -9,7 +9,8 @@ from mesh.density import NAMED, RefinedBox, RefinedCircle, SmoothTransition, uni
 from mesh.generators import fibonacci_points, random_points
 from mesh.gridded_density import Shaping, find_density, read_density
 from mesh.moments import masses_and_moments
-from mesh.optimizer import Limits, Optimizer
+from mesh.optimizer import RELATIVE_QUADRATURE_ERROR, Limits, Optimizer
+from mesh.scvt import Request, optimize, starting_mesh
 from mesh.sphere import from_lonlat, normalize, to_lonlat
 from mesh.triangulation import Triangulation
 from mesh.weighted_moments import WeightedCells
@@ -132,6 +133,17 @@ def test_refined_circle_converges_with_the_right_widths(start: str) -> None:
     assert np.median(width[coarse]) / np.median(width[fine]) == pytest.approx(3.0, rel=0.05)
 
 
+@pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
+def test_energy_never_rises_above_the_error_of_its_quadrature(method: str) -> None:
+    limits = Limits(1e-4, iterations=300)
+    request = Request(642, "random", method, NAMED["refined-circle"])
+    energy = np.array(optimize(*starting_mesh(request), request, limits).history.energy)
+    assert np.all(energy <= (1.0 + RELATIVE_QUADRATURE_ERROR) * np.minimum.accumulate(energy))
+    assert energy[-1] < 0.9 * energy[0]
+    if method == "lloyd":
+        assert np.all(np.diff(energy) <= 0.0)
+
+
 def test_widths_follow_the_density_to_minus_a_quarter() -> None:
     mesh = scvt_mesh(2562, density="smooth-transition", tolerance=1e-4)
     slope, _ = np.polyfit(np.log(mesh.mesh_density), np.log(np.sqrt(mesh.area_cell)), 1)
@@ -203,11 +215,33 @@ def test_density_on_a_mesh_is_interpolated(tmp_path: Path) -> None:
     np.testing.assert_allclose(read_density(path)(points), 3.0 + points[:, 2], atol=0.03)
 
 
+def test_grid_may_close_the_circle_of_longitudes(tmp_path: Path) -> None:
+    latitude, longitude = np.arange(-90.0, 91.0, 30.0), np.arange(-180.0, 181.0, 30.0)
+    values = np.repeat(np.arange(1.0, 8.0)[:, None], 13, axis=1)
+    density = read_density(write_grid(tmp_path / "grid.nc", values, latitude, longitude))
+    np.testing.assert_allclose(density(at(180, 0)), 4.0)
+    np.testing.assert_allclose(density(at(179.999, 15)), 4.5)
+
+
+def test_missing_and_negative_values_of_a_file_are_refused(tmp_path: Path) -> None:
+    latitude, longitude = np.array([-60.0, 0.0, 60.0]), np.arange(4) * 90.0
+    values = np.ones((3, 4))
+    values[1, 2] = -5.0
+    path = write_grid(tmp_path / "grid.nc", values, latitude, longitude)
+    with pytest.raises(MeshError, match="density falls to -5; a density is not negative"):
+        read_density(path)
+    assert read_density(path, shaping=Shaping(floor=0.5))(at(180, 0))[0] == pytest.approx(0.5)
+    with netCDF4.Dataset(path, "r+") as file:
+        file["density"][0, 0] = np.ma.masked
+    with pytest.raises(MeshError, match="1 values of density are missing or not finite"):
+        read_density(path, shaping=Shaping(floor=0.5))
+
+
 def test_unusable_density_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match="not a readable NetCDF file"):
         find_density(str(tmp_path / "absent.nc"))
     path = write_grid(tmp_path / "grid.nc", np.full((3, 4), np.nan), np.array([-60.0, 0.0, 60.0]), np.arange(4) * 90.0)
-    with pytest.raises(MeshError, match="12 values of the density are not finite"):
+    with pytest.raises(MeshError, match="12 values of density are missing or not finite"):
         read_density(path)
     with pytest.raises(MeshError, match="no variable named depth"):
         read_density(path, "depth")

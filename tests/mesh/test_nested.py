@@ -23,8 +23,9 @@ def test_generators_beyond_the_transition_stay(coarse: ScvtResult) -> None:
     assert 300 < len(outside) < 600
     quality = mesh_quality(mesh_from_points(result.points, result.triangles, BOX, "refined-box"))
     assert quality.q_avg > 0.98
-    width = 1.0 / np.sqrt(len(coarse.points))
-    assert len(result.points) > 1.5 * len(coarse.points), width
+    assert result.fixed is not None
+    np.testing.assert_array_equal(BOX(result.points[result.fixed]), 1.0)
+    assert len(result.points) > 1.5 * len(coarse.points)
 
 
 def test_number_of_cells_is_met(coarse: ScvtResult) -> None:

@@ -25,7 +25,6 @@ def test_icosahedron_is_perfect() -> None:
     for value in (measured.mu, measured.sigma_avg, measured.sigma_min, measured.q_avg, measured.q_min):
         assert value == pytest.approx(1.0, abs=1e-14)
     assert measured.obtuse == 0
-    assert measured.residual is not None
     assert measured.residual < 1e-14
 
 

@@ -136,7 +136,6 @@ def test_quality_of_converged_meshes(cells: int) -> None:
     found = (measured.mu, measured.sigma_avg, measured.sigma_min, measured.q_avg, measured.q_min)
     np.testing.assert_allclose(found, CONVERGED[cells], atol=2e-6)
     assert measured.obtuse == 0
-    assert measured.residual is not None
     assert measured.residual <= 1e-8
 
 

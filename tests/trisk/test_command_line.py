@@ -1,6 +1,7 @@
 """The command line: what it prints, what it writes, and how it refuses."""
 
 import json
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -128,6 +129,9 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
         (("mesh", "--cells", 162, "--tolerance", 0, "-o", tmp_path / "x.nc"), "tolerance"),
         (("mesh", "--cells", 42, "-o", tmp_path / "absent" / "x.nc"), "cannot be written"),
         (("mesh", "-o", tmp_path / "x.nc"), "give --cells N"),
+        (("mesh", "--cells", 10**14, "-o", tmp_path / "x.nc"), "too many half-edges"),
+        (("mesh", "--cells", 42, "--tolerance", "inf", "-o", tmp_path / "x.nc"), "positive and finite"),
+        (("mesh", "--nested", mesh_file, "--start", "random", "-o", tmp_path / "x.nc"), "do not go with --nested"),
         (("mesh", "--cells", 42, "--density", "dense", "-o", tmp_path / "x.nc"), "no density named 'dense'"),
         (("plot", tmp_path), "holds no readable run"),
         (("quality", tmp_path / "absent.nc"), "no such file"),
@@ -190,6 +194,27 @@ def test_directory_with_a_run_is_kept_unless_forced(trisk, mesh_file: Path, tmp_
     assert code == 2
     assert "holds a run already" in err
     assert trisk(*run, "--force")[0] == 0
+
+
+def test_wrong_option_keeps_the_run_that_force_would_replace(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    run = ("run", "williamson2", "--mesh", mesh_file, "-o", tmp_path / "run", "-q")
+    assert trisk(*run, "--days", 0.1)[0] == 0
+    assert trisk(*run, "--days", 0, "--force")[0] == 2
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "completed"
+
+
+def test_full_disk_is_a_sentence(mesh_file: Path, tmp_path: Path) -> None:
+    limited = "ulimit -f 300; exec " + shlex.join([sys.executable, "-m", "trisk"])
+    for arguments, code in (
+        (["mesh", "--cells", "2562", "-o", str(tmp_path / "large.nc"), "-q"], 2),
+        (["run", "williamson5", "--mesh", str(mesh_file), "--days", "60", "-o", str(tmp_path / "run"), "-q"], 1),
+    ):
+        done = subprocess.run(["bash", "-c", f"{limited} {shlex.join(arguments)}"], capture_output=True, text=True)
+        assert done.returncode == code, done.stderr
+        assert "cannot be written" in done.stderr
+        assert "Traceback" not in done.stderr
+    assert not (tmp_path / "large.nc").exists()
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "failed"
 
 
 def test_blow_up_is_code_1(trisk, mesh_file: Path, tmp_path: Path) -> None:
