@@ -126,7 +126,7 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
 
 def edges_of_cells(topology: Topology) -> tuple[Array, Array]:
     """Edges of every cell (n_cells, max_edges), 0 where filled, and 1.0 or 0.0 for what is an edge or filled."""
-    inside = np.arange(topology.max_edges) < topology.n_edges_on_cell[:, None]
+    inside = topology.on_ring
     return np.where(inside, topology.edges_on_cell, 0), inside.astype(float)
 
 

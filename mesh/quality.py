@@ -64,7 +64,7 @@ def edge_chords(mesh: VoronoiMesh) -> Array:
 def neighbour_distance_ratio(mesh: VoronoiMesh) -> Array:
     """Shortest over longest distance to a neighbour, sigma (n_cells,)."""
     chords = edge_chords(mesh)
-    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    inside = mesh.on_ring
     distances = chords[np.where(inside, mesh.edges_on_cell, 0)]
     return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
 

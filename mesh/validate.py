@@ -122,7 +122,7 @@ def _check_ranges(mesh: VoronoiMesh) -> None:
 def _check_rings(mesh: Topology) -> None:
     """Every cell's edges and neighbours agree with the cells of the edges, each edge in exactly two rings."""
     cell = np.arange(mesh.n_cells)[:, None]
-    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    inside = mesh.on_ring
     ends = mesh.cells_on_edge[np.where(inside, mesh.edges_on_cell, 0)]
     own = (ends == cell[:, :, None]).sum(axis=2)
     _require((own == 1) | ~inside, "cells", "edgesOnCell lists an edge that cellsOnEdge gives to other cells")
@@ -217,7 +217,7 @@ def _check_orientation(mesh: VoronoiMesh) -> None:
         "verticesOnEdge does not run along the tangent, 90 degrees left of the normal given by cellsOnEdge "
         "(or the mesh is not Delaunay)",
     )
-    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    inside = mesh.on_ring
     following = np.take_along_axis(
         mesh.cells_on_cell, (np.arange(mesh.max_edges) + 1) % mesh.n_edges_on_cell[:, None], axis=1
     )
@@ -359,7 +359,7 @@ def _adjoint_defect(mesh: VoronoiMesh) -> float:
     """sum_i h_i A_i (div F)_i + sum_e l_e d_e F_e (grad h)_e for random h and F, relative to the sum of its terms."""
     generator = np.random.default_rng(2)
     h, flux = generator.uniform(-1.0, 1.0, mesh.n_cells), generator.uniform(-1.0, 1.0, mesh.n_edges)
-    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    inside = mesh.on_ring
     edges = np.where(inside, mesh.edges_on_cell, 0)
     sign = np.where(mesh.cells_on_edge[edges, 0] == np.arange(mesh.n_cells)[:, None], 1.0, -1.0)
     outflow = np.where(inside, sign * (flux * mesh.dv_edge)[edges], 0.0).sum(axis=1)

@@ -7,6 +7,7 @@ dimensions, units and meaning. In memory, indices count from 0 and -1 fills what
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 
@@ -52,6 +53,11 @@ class Topology:
     def max_edges(self) -> int:
         """Width of the ring arrays: the largest number of edges of a cell, or more in files of others."""
         return self.edges_on_cell.shape[1]
+
+    @property
+    def on_ring(self) -> NDArray[np.bool_]:
+        """Which entries (n_cells, max_edges) of the ring arrays of cells are edges and not fill."""
+        return np.arange(self.max_edges) < self.n_edges_on_cell[:, None]
 
 
 @dataclass(frozen=True, eq=False)

@@ -182,7 +182,7 @@ def sizes_figure(meshes: dict[str, VoronoiMesh]) -> Figure:
     figure = Figure(figsize=(11.0, 4.0), layout="constrained")
     left, right = figure.subplots(1, 2)
     for title, mesh in meshes.items():
-        inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+        inside = mesh.on_ring
         distances = np.where(inside, mesh.dc_edge[np.where(inside, mesh.edges_on_cell, 0)], 0.0)
         size = np.degrees(distances.sum(axis=1) / mesh.n_edges_on_cell)
         rank = np.arange(mesh.n_cells) / mesh.n_cells

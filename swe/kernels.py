@@ -16,7 +16,7 @@ compiled = numba.njit(cache=True, parallel=True)
 
 def edge_signs_on_cell(mesh: VoronoiMesh) -> Array:
     """+1 where the normal of `edges_on_cell[c, j]` leaves cell c, -1 where it enters, 0 beyond the ring."""
-    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[:, None]
+    inside = mesh.on_ring
     first = mesh.cells_on_edge[np.where(inside, mesh.edges_on_cell, 0), 0]
     return np.where(inside, np.where(first == np.arange(mesh.n_cells)[:, None], 1.0, -1.0), 0.0)
 
