@@ -1,7 +1,19 @@
 """Test cases: parameters, initial and, where known, exact state; one paper a module."""
 
 from cases.base import Case
+from cases.galewsky import Galewsky
+from cases.lake_at_rest import LakeAtRest
 from cases.registry import CASES, find_case
-from cases.williamson import Williamson2, Williamson5
+from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 
-__all__ = ["CASES", "Case", "Williamson2", "Williamson5", "find_case"]
+__all__ = [
+    "CASES",
+    "Case",
+    "Galewsky",
+    "LakeAtRest",
+    "Williamson1",
+    "Williamson2",
+    "Williamson5",
+    "Williamson6",
+    "find_case",
+]

@@ -1,15 +1,21 @@
 """What a test case is: documented parameters and pure functions of position and time."""
 
+import math
+import traceback
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import ClassVar
 
 import numpy as np
 
+from cases.differences import gradient, laplacian
 from mesh.arrays import Array
 from mesh.operators import normal_velocity_from_streamfunction
+from mesh.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
+from swe.errors import SetupError
 from swe.state import State
 
 
@@ -17,15 +23,32 @@ from swe.state import State
 class Case(ABC):
     """A shallow-water test case on a rotating sphere; longitudes and latitudes in radians.
 
-    `name` is what the user types, `reference` the paper, `recommended_days` how long the paper runs it.
-    `has_exact_solution` tells whether `thickness` and `streamfunction` hold at any time or at time zero only.
+    A case must say `thickness` and `streamfunction`, a `title` and its `recommended_days`; the rest has defaults.
+    The functions give one value for each position, or one number for all. Where `has_exact_solution`, those that
+    take a time hold at any time, else at time zero only.
     """
 
     name: ClassVar[str]
+    """What the user types."""
+
     title: ClassVar[str]
-    reference: ClassVar[str]
+    """What it is, in a few words."""
+
     recommended_days: ClassVar[float]
-    has_exact_solution: ClassVar[bool] = False
+    """How long the paper runs it."""
+
+    reference: ClassVar[str] = ""
+    """The paper, starting with authors and year."""
+
+    convergence_order: ClassVar[float | None] = None
+    """Least order, in the distance of cells, accepted of the l2 error norm of thickness on the recommended day.
+
+    It holds between successive converged uniform meshes of 10242, 40962, ... cells; None where there is no exact
+    solution or no order to expect.
+    """
+
+    prescribed_wind: ClassVar[bool] = False
+    """Whether the wind stays as it is at the start, so that only thickness evolves."""
 
     radius: float = EARTH_RADIUS
     """Radius of the sphere, m."""
@@ -36,6 +59,25 @@ class Case(ABC):
     rotation_rate: float = ROTATION_RATE
     """Angular velocity of the sphere, 1/s."""
 
+    def __post_init__(self) -> None:
+        for name, value in self.parameters().items():
+            if isinstance(value, float) and not math.isfinite(value):
+                raise SetupError(f"{name} is {value}; give a finite number")
+        for name in ("radius", "gravity"):
+            value = self.parameters()[name]
+            if value <= 0.0:
+                raise SetupError(f"{name} is {value:g}; it must be positive")
+
+    @property
+    def has_exact_solution(self) -> bool:
+        """Whether the solution is known at any time."""
+        return False
+
+    @property
+    def background_depth(self) -> float:
+        """Constant part of the thickness, m, that is no signal: error norms are taken of what is above it."""
+        return 0.0
+
     @abstractmethod
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Thickness of the fluid, m, at `time` seconds."""
@@ -44,37 +86,73 @@ class Case(ABC):
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Streamfunction psi, m2/s, at `time` seconds; the velocity is k x grad(psi)."""
 
+    def velocity(self, longitude: Array, latitude: Array, time: float = 0.0) -> tuple[Array, Array]:
+        """Eastward and northward velocity, m/s, at `time` seconds; differences of the streamfunction by default."""
+        eastward, northward = gradient(self._evaluated(self.streamfunction, time), longitude, latitude)
+        return -northward / self.radius, eastward / self.radius
+
+    def vorticity(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
+        """Relative vorticity, 1/s, at `time` seconds; differences of the streamfunction by default."""
+        return laplacian(self._evaluated(self.streamfunction, time), longitude, latitude) / self.radius**2
+
     def topography(self, longitude: Array, latitude: Array) -> Array:
         """Height of the bottom, m; flat unless the case says otherwise."""
-        return np.zeros(np.broadcast_shapes(longitude.shape, latitude.shape))
+        return np.zeros(longitude.shape)
 
     def coriolis(self, longitude: Array, latitude: Array) -> Array:
         """Coriolis parameter, 1/s, of rotation about the polar axis."""
-        return 2.0 * self.rotation_rate * np.sin(latitude) + 0.0 * longitude
+        return 2.0 * self.rotation_rate * np.sin(latitude)
 
-    def state_on(self, mesh: VoronoiMesh, time: float = 0.0) -> State:
-        """State at `time` seconds on `mesh`: thickness at the centres, normal velocity from the streamfunction.
+    def state_on(self, mesh: VoronoiMesh, time: float = 0.0, sampling: Sampling = "point") -> State:
+        """State at `time` seconds on `mesh`: thickness at the cells, normal velocity from the streamfunction.
 
-        The streamfunction is taken at vertices, so that the velocity has no discrete divergence.
+        Thickness is that of the centres, or the mean over each cell where `sampling` is "mean". The streamfunction
+        is taken at vertices, so that the velocity has no discrete divergence.
         """
-        streamfunction = self.streamfunction(mesh.lon_vertex, mesh.lat_vertex, time)
+        streamfunction = self._evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
         return State(
-            self.thickness(mesh.lon_cell, mesh.lat_cell, time),
+            sample_cells(mesh, self._evaluated(self.thickness, time), sampling),
             normal_velocity_from_streamfunction(mesh, streamfunction),
         )
 
-    def initial_state(self, mesh: VoronoiMesh) -> State:
+    def initial_state(self, mesh: VoronoiMesh, sampling: Sampling = "point") -> State:
         """State at time zero on `mesh`, whose radius is that of the case."""
-        return self.state_on(mesh)
+        return self.state_on(mesh, 0.0, sampling)
 
-    def topography_on(self, mesh: VoronoiMesh) -> Array:
-        """Height of the bottom at cell centres (n_cells,), m."""
-        return self.topography(mesh.lon_cell, mesh.lat_cell)
+    def topography_on(self, mesh: VoronoiMesh, sampling: Sampling = "point") -> Array:
+        """Height of the bottom at cells (n_cells,), m, at the centres or as means over the cells."""
+        return sample_cells(mesh, self._evaluated(self.topography), sampling)
 
     def coriolis_on(self, mesh: VoronoiMesh) -> Array:
         """Coriolis parameter at vertices (n_vertices,), 1/s."""
-        return self.coriolis(mesh.lon_vertex, mesh.lat_vertex)
+        return self._evaluated(self.coriolis)(mesh.lon_vertex, mesh.lat_vertex)
 
     def parameters(self) -> dict[str, float]:
         """Parameters by name."""
         return asdict(self)
+
+    def _evaluated(self, function: Callable[..., Array], *time: float) -> SphereFunction:
+        """`function` of this case as one of longitude and latitude; raises `SetupError` where it fails."""
+
+        def field(longitude: Array, latitude: Array) -> Array:
+            try:
+                values = np.asarray(function(longitude, latitude, *time), dtype=np.float64)
+            except SetupError:
+                raise
+            except Exception as error:
+                place = _place_of_call(error)
+                raise SetupError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
+            if values.shape not in ((), longitude.shape):
+                raise SetupError(
+                    f"{function.__name__} of {self.name} gives an array of shape {values.shape} for positions of "
+                    f"shape {longitude.shape}; it must give one value for each position, or one number"
+                )
+            return np.array(np.broadcast_to(values, longitude.shape))
+
+        return field
+
+
+def _place_of_call(error: Exception) -> str:
+    """Where the function that was called from here came to `error`, as a part of a sentence."""
+    called = traceback.extract_tb(error.__traceback__)[1:2]
+    return "".join(f" in line {frame.lineno} of {frame.filename}" for frame in called)

@@ -1,14 +1,34 @@
-"""The cases by name."""
+"""The cases by name, and those in files of users by address; `docs/cases.md` has an example."""
+
+from collections.abc import Mapping
 
 from cases.base import Case
-from cases.williamson import Williamson2, Williamson5
+from cases.case_file import is_address, load_case
+from cases.galewsky import Galewsky
+from cases.lake_at_rest import LakeAtRest
+from cases.parameters import Value, with_parameters
+from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 from swe.errors import SetupError
 
-CASES: dict[str, type[Case]] = {case.name: case for case in (Williamson2, Williamson5)}
+CASES: dict[str, type[Case]] = {
+    case.name: case for case in (Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest)
+}
 
 
-def find_case(name: str) -> Case:
-    """Return the case called `name`, with the parameters of its paper; raise `SetupError` where there is none."""
+def find_case(name: str, parameters: Mapping[str, Value] | None = None) -> Case:
+    """Return the case called `name`, or that at an address FILE.py:CLASS, with `parameters` where they are given.
+
+    What is not given is as in the paper. Values may be text, as typed; those that the record of a run holds under
+    "case" and "parameters" make its case again. Raises `SetupError` where there is no such case or parameter.
+    """
+    return with_parameters(_default_case(name), parameters or {})
+
+
+def _default_case(name: str) -> Case:
+    if is_address(name):
+        return load_case(name)
     if name not in CASES:
-        raise SetupError(f"there is no case named '{name}'; choose one of {', '.join(CASES)}")
+        raise SetupError(
+            f"there is no case named '{name}'; choose one of {', '.join(CASES)}, or FILE.py:CLASS for one of your own"
+        )
     return CASES[name]()

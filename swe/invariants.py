@@ -1,6 +1,7 @@
 """Global integrals that the continuous equations conserve, and their changes in the course of a run."""
 
 import math
+import sys
 from dataclasses import dataclass
 
 import numpy as np
@@ -81,11 +82,16 @@ class Changes:
 
 
 def relative_changes(initial: Invariants, present: Invariants) -> Changes:
-    """Changes from `initial` to `present`; a yardstick of zero (no motion, no rotation) is replaced by one."""
+    """Changes from `initial` to `present`.
+
+    A yardstick of zero (no rotation) is replaced by one, and an available energy that is lost in the round-off of the
+    total (a level surface at rest) by the total.
+    """
     energy = (present.kinetic_energy - initial.kinetic_energy) + (present.potential_energy - initial.potential_energy)
+    at_rest = initial.available_energy < sys.float_info.epsilon * initial.total_energy
     return Changes(
         mass=(present.mass - initial.mass) / initial.mass,
-        total_energy=energy / (initial.available_energy or 1.0),
+        total_energy=energy / (initial.total_energy if at_rest else initial.available_energy),
         total_energy_of_total=energy / initial.total_energy,
         potential_enstrophy=(present.potential_enstrophy - initial.potential_enstrophy)
         / (initial.potential_enstrophy or 1.0),

@@ -33,20 +33,25 @@ class ShallowWaterModel:
         Coriolis parameter at vertices (n_vertices,), 1/s.
     gravity
         Acceleration of gravity, m/s2.
+    prescribed_wind
+        Whether the velocity stays as it is, so that thickness is advected and there are no gravity waves.
 
     Raises
     ------
     SetupError
-        Where a field has the wrong shape or is not finite.
+        Where a field has the wrong shape or type or is not finite.
     """
 
-    def __init__(self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float) -> None:
-        _check_field("topography", topography, mesh.n_cells)
-        _check_field("coriolis", coriolis, mesh.n_vertices)
+    def __init__(
+        self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, prescribed_wind: bool = False
+    ) -> None:
+        check_field("topography", topography, mesh.n_cells)
+        check_field("coriolis", coriolis, mesh.n_vertices)
         self.mesh = mesh
         self.topography = topography
         self.coriolis = coriolis
         self.gravity = gravity
+        self.prescribed_wind = prescribed_wind
         self._sign_on_cell = kernels.edge_signs_on_cell(mesh)
         self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
         self._thickness_flux = np.empty(mesh.n_edges)
@@ -57,12 +62,15 @@ class ShallowWaterModel:
 
     def tendency(self, state: State, result: State) -> None:
         """Write the time derivative of `state` into `result`; allocates nothing."""
-        mesh, h, u = self.mesh, state.thickness, state.normal_velocity
-        F, q_edge, K = self._thickness_flux, self._potential_vorticity_edge, self._kinetic_energy
-        kernels.thickness_flux(h, u, mesh.cells_on_edge, F)
-        self._update_vorticity(state)
-        kernels.mean_of_vertices(self._potential_vorticity, mesh.vertices_on_edge, q_edge)
-        self._update_kinetic_energy(state)
+        self._update_thickness_tendency(state, result)
+        if self.prescribed_wind:
+            result.normal_velocity.fill(0.0)
+        else:
+            self._update_velocity_tendency(state, result)
+
+    def _update_thickness_tendency(self, state: State, result: State) -> None:
+        mesh, F = self.mesh, self._thickness_flux
+        kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, F)
         kernels.thickness_tendency(
             F,
             mesh.n_edges_on_cell,
@@ -72,11 +80,18 @@ class ShallowWaterModel:
             mesh.area_cell,
             result.thickness,
         )
+
+    def _update_velocity_tendency(self, state: State, result: State) -> None:
+        """Write the time derivative of velocity; the flux of thickness is there already."""
+        mesh, q_edge = self.mesh, self._potential_vorticity_edge
+        self._update_vorticity(state)
+        kernels.mean_of_vertices(self._potential_vorticity, mesh.vertices_on_edge, q_edge)
+        self._update_kinetic_energy(state)
         kernels.velocity_tendency(
-            h,
+            state.thickness,
             self.topography,
-            K,
-            F,
+            self._kinetic_energy,
+            self._thickness_flux,
             q_edge,
             self.gravity,
             mesh.cells_on_edge,
@@ -101,11 +116,14 @@ class ShallowWaterModel:
         """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
 
         Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
-        frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2).
+        frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
+        which has no waves, it is the largest |u| dt / d.
         """
-        first, second = self.mesh.cells_on_edge.T
-        depth = np.maximum(state.thickness[first], state.thickness[second])
-        speed = np.sqrt(self.gravity * depth) + np.abs(state.normal_velocity)
+        speed = np.abs(state.normal_velocity)
+        if not self.prescribed_wind:
+            first, second = self.mesh.cells_on_edge.T
+            depth = np.maximum(state.thickness[first], state.thickness[second])
+            speed = np.sqrt(self.gravity * depth) + speed
         return float(time_step * np.max(speed / self.mesh.dc_edge))
 
     def _update_vorticity(self, state: State) -> None:
@@ -141,9 +159,12 @@ class ShallowWaterModel:
         )
 
 
-def _check_field(name: str, values: Array, size: int) -> None:
+def check_field(name: str, values: Array, size: int) -> None:
+    """Raise `SetupError` where `values` are not `size` finite numbers of double precision."""
     if values.shape != (size,):
         raise SetupError(f"{name} has shape {values.shape}, but the mesh needs ({size},)")
+    if values.dtype != np.float64:
+        raise SetupError(f"{name} has numbers of type {values.dtype}; it must have float64")
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
         raise SetupError(f"{name} is {values[wrong[0]]} at entity {wrong[0]} (counted from 0); it must be finite")

@@ -57,7 +57,7 @@ SERIES = {
     "potential_enstrophy_change": ("1", "change of potential enstrophy relative to its initial value"),
     "absolute_vorticity": ("m2 s-1", "integral of f + zeta"),
     "absolute_vorticity_change": ("1", "change of absolute vorticity relative to the integral of |f|"),
-    "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges"),
+    "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges, |u| dt / d if the wind is prescribed"),
     "max_speed": ("m s-1", "largest speed sqrt(2 K) over all cells"),
 }
 """Diagnostics: name -> units, meaning."""

@@ -13,11 +13,12 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.io import mesh_hash, write_mesh
+from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, SetupError
 from swe.invariants import Invariants, measure_invariants, relative_changes
-from swe.model import ShallowWaterModel
+from swe.model import ShallowWaterModel, check_field
 from swe.output import (
     DIAGNOSTICS_FILE,
     HISTORY_FILE,
@@ -60,11 +61,15 @@ class Case(Protocol):
     def gravity(self) -> float:
         """Acceleration of gravity, m/s2."""
 
-    def initial_state(self, mesh: VoronoiMesh) -> State:
-        """State at time zero."""
+    @property
+    def prescribed_wind(self) -> bool:
+        """Whether the wind stays as it is at the start, so that only thickness evolves."""
 
-    def topography_on(self, mesh: VoronoiMesh) -> Array:
-        """Height of the bottom at cells, m."""
+    def initial_state(self, mesh: VoronoiMesh, sampling: Sampling) -> State:
+        """State at time zero, thickness at the centres of cells or the mean over each."""
+
+    def topography_on(self, mesh: VoronoiMesh, sampling: Sampling) -> Array:
+        """Height of the bottom at the centres of cells or the mean over each, m."""
 
     def coriolis_on(self, mesh: VoronoiMesh) -> Array:
         """Coriolis parameter at vertices, 1/s."""
@@ -80,6 +85,7 @@ class Configuration:
     time_step: float
     snapshot_interval: float
     diagnostics_interval: float
+    sampling: Sampling
 
 
 class Simulation:
@@ -99,11 +105,15 @@ class Simulation:
         Steps are shortened where they would pass an output time.
     snapshot_interval, diagnostics_interval
         Seconds between snapshots and between rows of diagnostics.
+    sampling
+        "point" where initial thickness and topography are those of the cells' centres, "mean" where they are means
+        over the cells.
 
     Raises
     ------
     SetupError
-        Where an option is out of range, the initial thickness is not positive, or the directory cannot be used.
+        Where an option is out of range, the case gives no sound fields, the initial thickness is not positive, or
+        the directory cannot be used.
     """
 
     def __init__(
@@ -115,6 +125,7 @@ class Simulation:
         time_step: float | None = None,
         snapshot_interval: float = DEFAULT_SNAPSHOT_INTERVAL,
         diagnostics_interval: float = DEFAULT_DIAGNOSTICS_INTERVAL,
+        sampling: Sampling = "point",
         overwrite: bool = False,
     ) -> None:
         _require_positive("the snapshot interval", snapshot_interval)
@@ -122,25 +133,36 @@ class Simulation:
         self.case = case
         self.mesh = mesh.scaled(case.radius)
         self.model = ShallowWaterModel(
-            self.mesh, case.topography_on(self.mesh), case.coriolis_on(self.mesh), case.gravity
+            self.mesh,
+            case.topography_on(self.mesh, sampling),
+            case.coriolis_on(self.mesh),
+            case.gravity,
+            case.prescribed_wind,
         )
-        self.state = case.initial_state(self.mesh)
+        self.state = case.initial_state(self.mesh, sampling)
+        check_field("initial thickness", self.state.thickness, self.mesh.n_cells)
+        check_field("initial normal velocity", self.state.normal_velocity, self.mesh.n_edges)
         self.time = 0.0
         self.steps = 0
         problem = self._problem_with_state()
         if problem:
             raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
         if time_step is None:
-            limit = DEFAULT_COURANT_NUMBER / self.model.courant_number(self.state, 1.0)
-            time_step = dividing_step(limit, min(snapshot_interval, diagnostics_interval))
+            time_step = self._default_time_step(min(snapshot_interval, diagnostics_interval))
         _require_positive("the time step", time_step)
-        self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval)
+        self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
         self.initial_courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = measure_invariants(self.model, self.state)
         self._stepper = RungeKutta(self.model.tendency, self.state)
         self._directory = None if output is None else Path(output)
         if self._directory is not None:
             _check_directory(self._directory, overwrite)
+
+    def _default_time_step(self, interval: float) -> float:
+        """Largest step up to the default Courant number that divides `interval`."""
+        per_second = self.model.courant_number(self.state, 1.0)
+        # Where nothing moves, under a prescribed wind of zero, any step does.
+        return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
 
     @property
     def invariants(self) -> Invariants:

@@ -1,0 +1,106 @@
+"""Cases of users: a class, or an object, in a Python file of their own."""
+
+import copy
+import importlib.util
+import inspect
+import sys
+import traceback
+from pathlib import Path
+from types import ModuleType
+from typing import Any, cast
+
+from cases.base import Case
+from swe.errors import SetupError
+
+MARK = ".py:"
+"""What tells FILE.py:CLASS from the name of a case."""
+
+
+def is_address(name: str) -> bool:
+    """Whether `name` means a file rather than a case of this package."""
+    return MARK in name or name.endswith(".py")
+
+
+def load_case(address: str) -> Case:
+    """Make the case that `address`, FILE.py:CLASS, names; its name becomes the address with the whole path.
+
+    CLASS is a subclass of `Case`, or an object with all that a case has. Raises `SetupError` where there is none.
+    """
+    file, _, attribute = address.rpartition(":")
+    if not address.rpartition(MARK)[1]:
+        raise SetupError(f"{address} is a file; name the class in it as well: {address}:MyCase")
+    path = Path(file).absolute()
+    found = _attribute(_imported(path), attribute, path)
+    case = _made(found, address) if isinstance(found, type) else found
+    _require_members(case, address)
+    return cast(Case, _named(case, f"{path}:{attribute}"))
+
+
+def _named(case: object, name: str) -> object:
+    """`case` under another name: a copy, of a class made for it, so that what the user wrote keeps its own."""
+    kind = type(case)
+    members = {"name": name, "__module__": kind.__module__, "__doc__": kind.__doc__}
+    try:
+        named = copy.copy(case)
+        object.__setattr__(named, "__class__", type(kind.__name__, (kind,), members))
+    except TypeError as error:
+        raise SetupError(f"{name} cannot be used ({error}); derive a class from cases.Case") from error
+    return named
+
+
+def _imported(path: Path) -> ModuleType:
+    """The module in the file at `path`, executed anew."""
+    if not path.is_file():
+        raise SetupError(f"{path}: no such file; write FILE.py:CLASS with the path of a Python file")
+    name = f"case file {path}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # where dataclasses look up the module of a class
+    try:
+        spec.loader.exec_module(module)
+    except (Exception, SystemExit) as error:
+        del sys.modules[name]
+        raise SetupError(f"{path} cannot be imported{_line(error, path)}: {error!r}") from error
+    return module
+
+
+def _line(error: BaseException, path: Path) -> str:
+    """The line of the file where importing it failed, as a part of a sentence."""
+    if isinstance(error, SyntaxError):
+        return f", line {error.lineno}" if error.lineno else ""
+    lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
+    return f", line {lines[-1]}" if lines else ""
+
+
+def _attribute(module: ModuleType, attribute: str, path: Path) -> Any:
+    if not hasattr(module, attribute):
+        own = [name for name, value in vars(module).items() if _is_own_case(value, module)]
+        others = f"it holds {', '.join(own)}" if own else "it holds no class derived from cases.Case"
+        raise SetupError(f"{path} holds no '{attribute}'; {others}")
+    return getattr(module, attribute)
+
+
+def _is_own_case(value: object, module: ModuleType) -> bool:
+    return isinstance(value, type) and issubclass(value, Case) and value.__module__ == module.__name__
+
+
+def _made(kind: type, address: str) -> object:
+    """An object of the class, with default parameters."""
+    if not issubclass(kind, Case):
+        raise SetupError(f"{address} is no case; derive the class from cases.Case")
+    if inspect.isabstract(kind):
+        raise SetupError(f"{address} lacks {' and '.join(sorted(kind.__abstractmethods__))}; write them")
+    try:
+        return kind()
+    except TypeError as error:
+        raise SetupError(f"{address} cannot be made ({error}); give every parameter a default") from error
+
+
+def _require_members(case: object, address: str) -> None:
+    """Raise `SetupError` where something that every case has, besides its name, is missing."""
+    members = {*Case.__annotations__, *vars(Case)} - {"name"}
+    missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
+    if missing:
+        raise SetupError(f"{address} lacks {', '.join(missing)}; derive the class from cases.Case and add them")

@@ -1,0 +1,51 @@
+"""A lake at rest: what Bermudez and Vazquez (1994), Computers & Fluids 23, 1049-1071, ask of a scheme with topography.
+
+They call it the C-property: where the surface is level and nothing moves, nothing may start to move.
+"""
+
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cases.williamson import ConicalMountain
+from mesh.arrays import Array
+
+
+@dataclass(frozen=True)
+class LakeAtRest(ConicalMountain):
+    """Fluid at rest with a level surface over the mountain of Williamson's test case 5; it stays so.
+
+    What moves is round-off, so that there is no order of convergence.
+    """
+
+    name: ClassVar[str] = "lake-at-rest"
+    title: ClassVar[str] = "Lake at rest over an isolated mountain"
+    reference: ClassVar[str] = (
+        "Bermudez and Vazquez (1994), Computers & Fluids 23, 1049-1071, https://doi.org/10.1016/0045-7930(94)90004-3"
+    )
+    recommended_days: ClassVar[float] = 5.0
+
+    surface_height: float = 5960.0
+    """Height of the surface, m."""
+
+    @property
+    def has_exact_solution(self) -> bool:
+        """Yes: nothing moves."""
+        return True
+
+    def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
+        """From the bottom to the level surface."""
+        return self.surface_height - self.topography(longitude, latitude)
+
+    def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
+        """Zero."""
+        return np.zeros(longitude.shape)
+
+    def velocity(self, longitude: Array, latitude: Array, time: float = 0.0) -> tuple[Array, Array]:
+        """Zero."""
+        return np.zeros(longitude.shape), np.zeros(longitude.shape)
+
+    def vorticity(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
+        """Zero."""
+        return np.zeros(longitude.shape)

@@ -1,0 +1,121 @@
+"""Parameters of a case: what they mean, and how they are set from text or from the record of a run."""
+
+import ast
+import inspect
+import math
+import operator
+import textwrap
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import is_dataclass, replace
+from typing import Any, get_type_hints
+
+from cases.base import Case
+from swe.errors import SetupError
+
+Value = float | bool | str
+"""Of a parameter: a number or a truth value, or the text of one."""
+
+KINDS = {float: "a number", int: "a whole number", bool: "true or false"}
+
+OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: operator.mul,
+    ast.Div: operator.truediv,
+}
+
+
+def split_settings(settings: Iterable[str]) -> dict[str, str]:
+    """Names and texts of settings NAME=VALUE; the last of a name counts."""
+    pairs = {}
+    for setting in settings:
+        name, equals, text = setting.partition("=")
+        if not equals:
+            raise SetupError(f"'{setting}' sets nothing; write NAME=VALUE, as in angle=0.05")
+        pairs[name.strip()] = text.strip()
+    return pairs
+
+
+def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
+    """`case` with other values of some parameters; raise `SetupError` where it has no such or they are no values."""
+    present = case.parameters()
+    for name in parameters:
+        if name not in present:
+            raise SetupError(f"{case.name} has no parameter '{name}'; choose among {', '.join(present)}")
+    kinds = get_type_hints(type(case))
+    changed: dict[str, Any] = {
+        name: _converted(case, name, value, kinds.get(name))
+        for name, value in parameters.items()
+        if value != present[name]
+    }
+    if not changed:
+        return case
+    if not is_dataclass(case):
+        raise SetupError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
+    return replace(case, **changed)
+
+
+def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
+    """`value` as the type that the parameter is annotated with; as it is where there is no annotation."""
+    if kind is None:
+        return value
+    if kind not in KINDS:
+        raise SetupError(f"{name} of {case.name} is neither a number nor true or false; change it in its file")
+    try:
+        if kind is bool:
+            return _truth(value)
+        number = _number(value) if isinstance(value, str) else value
+        if isinstance(number, bool) or (kind is int and number != int(number)):
+            raise ValueError
+        return int(number) if kind is int else float(number)
+    except (ValueError, OverflowError, ZeroDivisionError, SyntaxError, RecursionError):
+        hint = ", such as 0.05 or pi/2-0.05" if kind is float else ""
+        raise SetupError(f"{name} is {value!r}; it must be {KINDS[kind]}{hint}") from None
+
+
+def _truth(value: Value) -> bool:
+    text = str(value).lower()
+    if text not in ("true", "false"):
+        raise ValueError
+    return text == "true"
+
+
+def _number(text: str) -> float:
+    """A number, or what + - * / make of numbers and pi."""
+    try:
+        return float(text)
+    except ValueError:
+        return _arithmetic(ast.parse(text, mode="eval").body)
+
+
+def _arithmetic(node: ast.expr) -> float:
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+        return float(node.value)
+    if isinstance(node, ast.Name) and node.id == "pi":
+        return math.pi
+    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
+        return OPERATORS[type(node.op)](_arithmetic(node.left), _arithmetic(node.right))
+    if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+        return -_arithmetic(node.operand)
+    raise ValueError
+
+
+def parameter_meanings(case: Case) -> dict[str, str]:
+    """First line of what stands below each parameter in the source of its class; nothing where it is not known."""
+    meanings = dict.fromkeys(case.parameters(), "")
+    for kind in reversed(type(case).__mro__):
+        meanings |= {name: text for name, text in _documented_fields(kind) if name in meanings}
+    return meanings
+
+
+def _documented_fields(kind: type[Any]) -> Iterable[tuple[str, str]]:
+    try:
+        body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
+    except (OSError, TypeError, SyntaxError):
+        return
+    assert isinstance(body, ast.ClassDef)
+    for field, below in zip(body.body, body.body[1:], strict=False):
+        if not (isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)):
+            continue
+        if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) and isinstance(below.value.value, str):
+            yield field.target.id, inspect.cleandoc(below.value.value).splitlines()[0]
