@@ -7,10 +7,12 @@ import numpy as np
 
 matplotlib.use("Agg")
 
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.colors import CenteredNorm, Normalize
 from matplotlib.figure import Figure
+from matplotlib.image import AxesImage
 from matplotlib.patches import Circle, Ellipse, Patch
 
 from mesh.arrays import Array
@@ -84,8 +86,25 @@ def field_figure(mesh: VoronoiMesh, values: Array, title: str, label: str, symme
 
 def draw_mollweide(axes: Axes, mesh: VoronoiMesh, values: Array, options: dict) -> PolyCollection:
     """Draw values (n_cells,) on the Mollweide map, with meridians and parallels every 30 degrees."""
-    rim = Ellipse((0.0, 0.0), 4.0 * np.sqrt(2.0), 2.0 * np.sqrt(2.0))
-    drawn = _draw(axes, mollweide_polygons(mesh, CENTRAL_LONGITUDE), values, rim, options)
+    drawn = _draw(axes, mollweide_polygons(mesh, CENTRAL_LONGITUDE), values, _mollweide_rim(), options)
+    _draw_mollweide_graticule(axes)
+    return drawn
+
+
+def draw_mollweide_raster(axes: Axes, values: Array, options: dict) -> AxesImage:
+    """Draw values (rows, columns) at the pixels of `projections.mollweide_raster` on the same map."""
+    x, y = 2.0 * np.sqrt(2.0), np.sqrt(2.0)
+    drawn = axes.imshow(values, extent=(-x, x, -y, y), origin="lower", **options)
+    _clip_to(axes, _mollweide_rim(), drawn)
+    _draw_mollweide_graticule(axes)
+    return drawn
+
+
+def _mollweide_rim() -> Ellipse:
+    return Ellipse((0.0, 0.0), 4.0 * np.sqrt(2.0), 2.0 * np.sqrt(2.0))
+
+
+def _draw_mollweide_graticule(axes: Axes) -> None:
     for longitude, latitude in _graticule():
         line = mollweide(longitude, latitude)
         axes.plot(*line.T, color="black", linewidth=0.3, alpha=0.4)
@@ -98,7 +117,6 @@ def draw_mollweide(axes: Axes, mesh: VoronoiMesh, values: Array, options: dict) 
         axes.text(x, 0.03, f"{longitude}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
     axes.set_xlim(-3.2, 2.9)
     axes.set_ylim(-1.48, 1.48)
-    return drawn
 
 
 def draw_orthographic(axes: Axes, mesh: VoronoiMesh, values: Array, options: dict) -> PolyCollection:
@@ -123,12 +141,17 @@ def _draw(axes: Axes, polygons: Polygons, values: Array, rim: Patch, options: di
         polygons.outlines, array=values[polygons.cells], edgecolors="face", linewidths=0.3, **options
     )
     axes.add_collection(collection, autolim=False)
+    _clip_to(axes, rim, collection)
+    return collection
+
+
+def _clip_to(axes: Axes, rim: Patch, drawn: Artist) -> None:
+    """Draw the rim of a map and cut off what passes it."""
     rim.set(facecolor="none", edgecolor="black", linewidth=0.8)
     axes.add_patch(rim)
-    collection.set_clip_path(rim)
+    drawn.set_clip_path(rim)
     axes.set_aspect("equal")
     axes.axis("off")
-    return collection
 
 
 def _graticule() -> list[tuple[Array, Array]]:

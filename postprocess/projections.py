@@ -42,6 +42,19 @@ def mollweide(longitude: Array, latitude: Array) -> Array:
     return np.stack([x, np.sqrt(2.0) * np.sin(angle)], axis=-1)
 
 
+def mollweide_raster(rows: int, columns: int) -> tuple[Array, Array]:
+    """Longitudes from the central meridian and latitudes (rows * columns,) of the pixels of the map, from the south.
+
+    The rectangle holds the map's ellipse; pixels beyond the rim have the longitude of the rim.
+    """
+    x = 2.0 * np.sqrt(2.0) * ((2.0 * np.arange(columns) + 1.0) / columns - 1.0)
+    sine = (2.0 * np.arange(rows) + 1.0) / rows - 1.0
+    angle = np.arcsin(sine)[:, None]
+    latitude = np.arcsin((2.0 * angle + np.sin(2.0 * angle)) / np.pi)
+    longitude = np.clip(np.pi * x / (2.0 * np.sqrt(2.0) * np.cos(angle)), -np.pi, np.pi)
+    return longitude.ravel(), np.repeat(latitude, columns)
+
+
 def orthographic(points: Array, longitude: float, latitude: float) -> Array:
     """Coordinates (..., 3) right, up and towards the viewer above `longitude`, `latitude` (rad)."""
     right = np.array([-np.sin(longitude), np.cos(longitude), 0.0])

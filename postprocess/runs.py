@@ -1,6 +1,7 @@
 """Read what a run left in its directory."""
 
 import json
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,10 +10,17 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.io import read_mesh
+from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
 from swe.output import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, RECORD_FILE, read_series
+
+DAY_TOLERANCE = 1e-6
+"""Snapshots less than this apart, in days, are of the same day."""
+
+DAYS_TOLD = 8
+"""Errors name all days of a run up to this number of them."""
 
 
 @dataclass(frozen=True)
@@ -23,23 +31,38 @@ class Snapshot:
     fields: dict[str, Array]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Run:
-    """A run directory: its mesh in metres, the name of the case and the series of diagnostics by name."""
+    """A run directory: its mesh in metres, its case, the days of its snapshots and its diagnostics by name.
+
+    `case` is the name of the case and `parameters` are what it was run with; `sampling` says what the initial thickness
+    was, see `mesh.quadrature`.
+    """
 
     directory: Path
     mesh: VoronoiMesh
     case: str
+    parameters: dict[str, float]
+    sampling: Sampling
+    days: Array
     series: dict[str, Array]
+
+    def snapshot(self, day: float) -> Snapshot:
+        """The snapshot of `day`; raise `SetupError` where there is none."""
+        if not days_of_both([day], self.days):
+            raise SetupError(
+                f"{self.directory} has no snapshot of day {day:g}; its days are {days_in_words(self.days)}"
+            )
+        return self._read(int(np.argmin(np.abs(self.days - day))))
 
     def last_snapshot(self) -> Snapshot:
         """The last snapshot in the history file."""
+        return self._read(len(self.days) - 1)
+
+    def _read(self, row: int) -> Snapshot:
         with netCDF4.Dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
-            return Snapshot(
-                float(file["time"][-1]) / SECONDS_PER_DAY,
-                {name: np.asarray(file[name][-1]) for name in FIELDS},
-            )
+            return Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
 
 
 def read_run(directory: Path) -> Run:
@@ -47,8 +70,27 @@ def read_run(directory: Path) -> Run:
     try:
         record = json.loads((directory / RECORD_FILE).read_text())
         series = read_series(directory / DIAGNOSTICS_FILE)
-        run = Run(directory, read_mesh(directory / MESH_FILE), str(record["case"]), series)
+        with netCDF4.Dataset(directory / HISTORY_FILE) as file:
+            days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
+        mesh = read_mesh(directory / MESH_FILE)
+        parameters = dict(record["parameters"].items())
+        sampling = record["configuration"]["sampling"]
+        run = Run(directory, mesh, str(record["case"]), parameters, sampling, days, series)
         run.last_snapshot()
         return run
-    except (OSError, json.JSONDecodeError, IndexError, KeyError, TypeError) as error:
+    except (OSError, json.JSONDecodeError, AttributeError, IndexError, KeyError, TypeError) as error:
         raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+
+
+def days_in_words(days: Iterable[float]) -> str:
+    """Days as a part of a sentence, the ones between the first and the last left out where there are many."""
+    shown = [f"{day:g}" for day in days]
+    if len(shown) > DAYS_TOLD:
+        shown = [*shown[:3], "...", shown[-1]]
+    return ", ".join(shown)
+
+
+def days_of_both(days: Iterable[float], others: Iterable[float]) -> list[float]:
+    """Those of `days` that are among `others`, up to round-off."""
+    known = np.array(list(others))
+    return [day for day in days if np.any(np.abs(known - day) < DAY_TOLERANCE)]

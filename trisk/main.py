@@ -9,6 +9,9 @@ from typing import Annotated
 
 import typer
 
+from trisk import study
+from trisk.options import CaseName, Quiet, Settings
+
 app = typer.Typer(
     help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
     no_args_is_help=True,
@@ -17,9 +20,10 @@ app = typer.Typer(
     rich_markup_mode="rich",
 )
 
+app.add_typer(study.app, name="study")
+
 RUN_FAILED, BAD_INPUT = 1, 2
 
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
 Recompute = Annotated[
     bool,
     typer.Option("--recompute-metrics", help="Rebuild lengths, areas and weights of the file from its generators."),
@@ -131,10 +135,14 @@ def quality(
 
 @app.command()
 def run(
-    case: Annotated[str, typer.Argument(help="Name of the test case: williamson2 or williamson5.")],
+    case: CaseName,
     output: Annotated[Path, typer.Option("--output", "-o", help="Run directory to create.")],
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
     cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
+    settings: Settings = None,
+    means: Annotated[
+        bool, typer.Option("--cell-means", help="Start from means over the cells instead of values at their centres.")
+    ] = False,
     days: Annotated[
         float | None, typer.Option("--days", help="Simulated days; by default those that the paper recommends.")
     ] = None,
@@ -149,11 +157,12 @@ def run(
 ) -> None:
     """Run a test case and write snapshots and diagnostics."""
     from cases import find_case
+    from cases.parameters import split_settings
     from mesh import read_mesh, scvt_mesh
     from swe import Simulation
     from trisk.report import convergence_bar, print_run
 
-    chosen = find_case(case)
+    chosen = find_case(case, split_settings(settings or ()))
     if (mesh_file is None) == (cells is None):
         raise typer.BadParameter("give either --mesh FILE or --cells N")
     if recompute_metrics and mesh_file is None:
@@ -171,11 +180,28 @@ def run(
         time_step=time_step,
         snapshot_interval=3600.0 * snapshot_hours,
         diagnostics_interval=3600.0 * diagnostics_hours,
+        sampling="mean" if means else "point",
         overwrite=force,
     )
     simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
     if not quiet:
         print_run(output)
+
+
+@app.command()
+def cases(
+    name: Annotated[
+        str | None, typer.Argument(help="Name of a test case, or FILE.py:CLASS, to see its parameters.")
+    ] = None,
+) -> None:
+    """List the test cases, or the parameters of one."""
+    from cases import CASES, find_case
+    from trisk.case_table import print_case, print_cases
+
+    if name is None:
+        print_cases([find_case(known) for known in CASES])
+    else:
+        print_case(find_case(name))
 
 
 @app.command()
@@ -192,6 +218,88 @@ def plot(
     if not quiet:
         for path in paths:
             typer.echo(path)
+
+
+@app.command()
+def spectra(
+    run_directories: Annotated[list[Path], typer.Argument(help="Directories of runs.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="Folder for the table and the figure.")],
+    days: Annotated[
+        list[float] | None, typer.Option("--day", help="Day of a snapshot, repeatable; by default the last.")
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Write and draw spectra of kinetic energy and potential enstrophy against total wavenumber."""
+    from postprocess.runs import read_run
+    from postprocess.spectra import write_spectra_of
+
+    paths = write_spectra_of([read_run(directory) for directory in run_directories], days or (), output)
+    if not quiet:
+        for path in paths:
+            typer.echo(path)
+
+
+@app.command()
+def reference(
+    case: CaseName,
+    output: Annotated[Path, typer.Option("--output", "-o", help="File of harmonics to write.")],
+    days: Annotated[
+        list[float] | None, typer.Option("--day", help="Day to keep, repeatable; by default those of the case.")
+    ] = None,
+    truncation: Annotated[
+        int, typer.Option("--truncation", help="Highest total wavenumber; its half and quarter are run as well.")
+    ] = 341,
+    damping_hours: Annotated[
+        float, typer.Option("--damping-hours", help="Time in which del^8 damps that wavenumber to 1/e; inf for none.")
+    ] = 1.0,
+    settings: Settings = None,
+    quiet: Quiet = False,
+) -> None:
+    """Make a reference solution of a case with the spectral model."""
+    from cases import find_case
+    from cases.parameters import split_settings
+    from trisk.reference import make
+
+    chosen = find_case(case, split_settings(settings or ()))
+    make(chosen, days or (), truncation, damping_hours, output, _command_line(), quiet)
+
+
+@app.command()
+def compare(
+    run_directories: Annotated[list[Path], typer.Argument(help="Directories of runs of one case, on any meshes.")],
+    reference: Annotated[
+        str,
+        typer.Option(
+            "--reference",
+            help="exact, a file of a spectral reference, or a run directory; auto is the exact solution, else the "
+            "reference that comes with the case, else the first run.",
+        ),
+    ] = "auto",
+    days: Annotated[
+        list[float] | None,
+        typer.Option("--day", help="Day to compare, repeatable; by default the last that all have."),
+    ] = None,
+    output: Annotated[
+        Path | None,
+        typer.Option("--output", "-o", help="Folder for maps of the last day; by default figures of the first run."),
+    ] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+) -> None:
+    """Compare runs with a solution of their case or with each other: error norms, conservation and maps."""
+    from postprocess.compare import compare as compare_runs
+    from postprocess.compare import comparison_record
+    from postprocess.compare_maps import write_maps
+    from swe.output import FIGURES_FOLDER
+    from trisk.comparison_table import print_comparison
+
+    comparison = compare_runs(run_directories, reference, days or ())
+    maps = write_maps(comparison, output or run_directories[0] / FIGURES_FOLDER)
+    if as_json:
+        typer.echo(json.dumps({**comparison_record(comparison), "maps": [str(path) for path in maps]}))
+        return
+    print_comparison(comparison)
+    for path in maps:
+        typer.echo(path)
 
 
 def _command_line() -> str:

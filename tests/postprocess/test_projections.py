@@ -11,6 +11,7 @@ from postprocess.projections import (
     Polygons,
     mollweide,
     mollweide_polygons,
+    mollweide_raster,
     orthographic_polygons,
 )
 
@@ -44,6 +45,19 @@ def turned_mesh(request: pytest.FixtureRequest, any_mesh: VoronoiMesh) -> Vorono
     east /= np.linalg.norm(east)
     rotation = np.stack([east, np.cross(target, east), target])
     return mesh_from_points(points @ rotation.T)
+
+
+def test_raster_is_the_inverse_of_the_map_and_ends_at_its_rim() -> None:
+    longitude, latitude = (each.reshape(40, 80) for each in mollweide_raster(40, 80))
+    x, y = np.moveaxis(mollweide(longitude, latitude), -1, 0)
+    columns = 2 * np.sqrt(2) * (np.arange(80) - 39.5) / 40
+    rows = np.sqrt(2) * (np.arange(40) - 19.5) / 20
+    inside = np.abs(longitude) < np.pi
+    assert np.mean(inside) == pytest.approx(np.pi / 4, rel=0.01)
+    np.testing.assert_allclose(y, np.broadcast_to(rows[:, None], (40, 80)), atol=1e-10)
+    np.testing.assert_allclose(x[inside], np.broadcast_to(columns, (40, 80))[inside], atol=1e-10)
+    at_rim = columns**2 / 8 + rows[:, None] ** 2 / 2 > 1
+    np.testing.assert_array_equal(at_rim, ~inside)
 
 
 def cells_covering(polygons: Polygons, place: np.ndarray) -> set[int]:

@@ -7,7 +7,7 @@ import numpy as np
 
 from cases import Williamson2, Williamson5
 from mesh import scvt_mesh
-from postprocess.norms import l1_norm, l2_norm, linf_norm
+from postprocess.norms import scalar_norms
 from swe import Simulation
 
 NORMS_FILE = Path(__file__).with_name("norms.json")
@@ -23,9 +23,10 @@ def compute_norms() -> dict[str, float]:
         start = simulation.state.copy()
         simulation.run(DAYS, progress=False)
         h, area = simulation.state.thickness, simulation.mesh.area_cell
-        norms[f"{case.name} l1 of thickness"] = l1_norm(h, start.thickness, area)
-        norms[f"{case.name} l2 of thickness"] = l2_norm(h, start.thickness, area)
-        norms[f"{case.name} linf of thickness"] = linf_norm(h, start.thickness)
+        of_thickness = scalar_norms(h, start.thickness, area)
+        norms[f"{case.name} l1 of thickness"] = of_thickness.l1
+        norms[f"{case.name} l2 of thickness"] = of_thickness.l2
+        norms[f"{case.name} linf of thickness"] = of_thickness.linf
         norms[f"{case.name} rms of normal velocity"] = float(np.sqrt(np.mean(simulation.state.normal_velocity**2)))
         norms[f"{case.name} potential enstrophy"] = simulation.invariants.potential_enstrophy
     return norms

@@ -76,10 +76,58 @@ def test_run_generates_a_mesh_of_any_number(trisk, tmp_path: Path) -> None:
 
 
 def test_help_at_every_level(trisk) -> None:
-    for command in ((), ("mesh",), ("quality",), ("run",), ("plot",)):
+    for command in ((), ("mesh",), ("quality",), ("run",), ("cases",), ("plot",), ("compare",)):
         code, out, _ = trisk(*command, "--help")
         assert code == 0
         assert "Usage" in out
+
+
+def test_cases_are_listed_with_their_parameters(trisk) -> None:
+    code, out, _ = trisk("cases")
+    assert code == 0
+    for name in ("williamson1", "williamson2", "williamson5", "williamson6", "galewsky", "lake-at-rest"):
+        assert name in out
+    code, out, _ = trisk("cases", "williamson6")
+    assert code == 0
+    assert "7.848e-06" in out
+    assert "Zonal wave number R." in out
+    assert "https://doi.org/" in out
+
+
+def test_parameters_and_means_are_set_and_recorded(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    depths = []
+    for number, options in enumerate(((), ("--cell-means",))):
+        run = tmp_path / f"run{number}"
+        settings = ("--set", "angle=pi/2-0.05", "--set", "reference_depth=5000")
+        command = ("run", "williamson2", "--mesh", mesh_file, *settings, *options, "--days", 0.1, "-o", run, "-q")
+        assert trisk(*command) == (0, "", "")
+        record = json.loads((run / "run.json").read_text())
+        assert record["parameters"]["angle"] == np.pi / 2 - 0.05
+        assert record["parameters"]["reference_depth"] == 5000.0
+        assert record["configuration"]["sampling"] == ("mean" if options else "point")
+        with netCDF4.Dataset(run / "history.nc") as file:
+            depths.append(np.asarray(file["thickness"][0]))
+    assert 1.0 < np.abs(depths[1] - depths[0]).max() < 100.0
+
+
+def test_case_of_a_user(trisk, mesh_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "mine.py").write_text(
+        "from cases import Williamson5\nclass Mine(Williamson5):\n    title = 'Mine'\n"
+        "    def topography(self, longitude, latitude):\n        return 100.0\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    run = ("run", "mine.py:Mine", "--mesh", mesh_file, "--days", 0.1, "-o", "run", "-q")
+    assert trisk(*run) == (0, "", "")
+    assert json.loads(Path("run/run.json").read_text())["case"] == f"{tmp_path}/mine.py:Mine"
+    assert "Speed u0 at the equator" in trisk("cases", "mine.py:Mine")[1]
+    with open("mine.py", "a") as file:
+        file.write("    def coriolis(self, longitude, latitude):\n        return latitude + missing\n")
+    code, _, err = trisk(*run, "--force")
+    assert code == 2
+    assert "coriolis of" in err
+    assert "line 7 of" in err
+    assert "Traceback" not in err
+    assert json.loads(Path("run/run.json").read_text())["status"] == "completed"
 
 
 def damaged(path: Path, kind: str) -> None:
@@ -120,6 +168,11 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
     run = ("run", "williamson5", "--mesh", mesh_file)
     for arguments, words in (
         (("run", "williamson55", "--cells", 162, "-o", tmp_path / "run"), "no case named 'williamson55'"),
+        (("run", "mine.py:Mine", "--cells", 162, "-o", tmp_path / "run"), "mine.py: no such file"),
+        (("cases", "williamson9"), "no case named 'williamson9'"),
+        ((*run, "-o", tmp_path / "run", "--set", "height=1"), "no parameter 'height'; choose among radius"),
+        ((*run, "-o", tmp_path / "run", "--set", "gravity=high"), "gravity is 'high'; it must be a number"),
+        (("run", "williamson1", *run[2:], "-o", tmp_path / "run", "--set", "background_depth=0"), "thickness is 0 m"),
         ((*run, "-o", tmp_path / "run", "--dt", -5), "the time step is -5 s"),
         ((*run, "-o", tmp_path / "run", "--days", 0), "cannot go to day 0"),
         ((*run, "-o", tmp_path / "run", "--snapshot-hours", 0), "the snapshot interval is 0 s"),

@@ -1,0 +1,172 @@
+"""The same case over families and sizes of meshes: their quality beside truncation and solution errors.
+
+A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh and one run for each family and size, and
+`study.csv` one row for each. What is there and fits is not made again, so a study that was interrupted goes on.
+"""
+
+import json
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cases.base import Case
+from mesh.arrays import Array
+from mesh.generators import icosahedral_level
+from mesh.io import read_mesh, write_mesh
+from mesh.moments import mean_spacing
+from mesh.quality import mesh_quality
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.compare import Comparison, compare, fields_of, fields_on
+from postprocess.families import FAMILIES
+from postprocess.runs import Run
+from postprocess.study_folder import TABLE_FILE, Row, Task, Tell, write_table
+from postprocess.truncation import truncation_errors
+from swe.errors import SetupError
+from swe.output import RECORD_FILE
+
+CONSERVATION = (
+    "mass_change",
+    "absolute_vorticity_change",
+    "total_energy_change_of_total",
+    "potential_enstrophy_change",
+)
+"""Series of diagnostics whose largest value, without sign, is in the table."""
+
+LARGEST_CELLS = 655362
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
+
+    Raises `SetupError` where a family is unknown or a number of cells is none of the bisected icosahedron.
+    """
+
+    folder: Path
+    case: Case
+    days: float
+    error_day: float
+    families: tuple[str, ...]
+    cells: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        for family in self.families:
+            if family not in FAMILIES:
+                raise SetupError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
+        for cells in self.cells:
+            if icosahedral_level(cells) is None or cells > LARGEST_CELLS:
+                raise SetupError(
+                    f"{cells} cells are no bisected icosahedron; choose among 162, 642, 2562, ... up to {LARGEST_CELLS}"
+                )
+        if not 0.0 < self.error_day <= self.days:
+            raise SetupError(
+                f"errors are to be taken on day {self.error_day:g}, which is not within the {self.days:g} days of the "
+                "run; choose a day that is"
+            )
+
+
+@dataclass(frozen=True)
+class Member:
+    """One mesh of a study, its run, None where that failed, and its comparison, None where there is no solution."""
+
+    family: str
+    requested_cells: int
+    mesh: VoronoiMesh
+    run: Run | None
+    comparison: Comparison | None
+    failure: str
+
+    @property
+    def spacing(self) -> float:
+        """Mean distance between neighbours, km."""
+        return mean_spacing(self.mesh.n_cells) * self.mesh.sphere_radius / 1e3
+
+
+def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[Row]]:
+    """Make what is missing of a study, coarse meshes first, and write its table; return its members and their rows."""
+    plan.folder.mkdir(parents=True, exist_ok=True)
+    members: list[Member] = []
+    rows: list[Row] = []
+    for cells in sorted(plan.cells):
+        for family in plan.families:
+            members.append(_member(plan, family, cells, progress, tell))
+            rows.append(row_of(members[-1], plan.error_day))
+            write_table(rows, plan.folder / TABLE_FILE)
+    return members, rows
+
+
+def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Member:
+    """Read or make one mesh and its run."""
+    name = f"{family}-{cells}"
+    mesh = _mesh(plan.folder / "meshes" / f"{name}.nc", family, cells, tell)
+    task = Task(plan.folder / "runs" / name, plan.case, mesh, plan.days, plan.error_day)
+    run, failure = task.carry_out(progress, tell)
+    comparison = None if run is None else _comparison(run, plan.error_day, tell)
+    return Member(family, cells, mesh.scaled(plan.case.radius), run, comparison, failure)
+
+
+def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
+    """The run beside the solution of its case; None where that is not known, for a reason that is told."""
+    try:
+        return compare([run.directory], days=[day])
+    except SetupError as error:
+        tell(f"no errors: {error}")
+        return None
+
+
+def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
+    if not path.exists():
+        tell(f"{path.stem}: making the mesh")
+        path.parent.mkdir(exist_ok=True)
+        write_mesh(FAMILIES[family].make(cells), path, f"mesh of a study: {FAMILIES[family].description}")
+    return read_mesh(path)
+
+
+def row_of(member: Member, error_day: float) -> Row:
+    """The line of a member: the mesh, its quality, truncation errors, solution errors and conservation."""
+    row: Row = {
+        "family": member.family,
+        "requested_cells": member.requested_cells,
+        "spacing_km": member.spacing,
+        **asdict(mesh_quality(member.mesh)),
+    }
+    for operator, norms in asdict(truncation_errors(member.mesh)).items():
+        row |= {f"truncation_{operator}_{name}": norms[name] for name in ("l2", "linf")}
+    row["failure"] = member.failure
+    if member.comparison is not None:
+        row |= _errors(member, member.comparison, error_day)
+    if member.run is not None:
+        row |= {name: float(np.abs(member.run.series[name]).max()) for name in CONSERVATION}
+        record = json.loads((member.run.directory / RECORD_FILE).read_text())
+        row |= {"time_step_s": record["configuration"]["time_step"], "steps": record["steps"]}
+    return row
+
+
+def thickness_error(member: Member, day: float) -> Array:
+    """Thickness of a run less that of the solution it is compared with (n_cells,), m."""
+    assert member.run is not None
+    assert member.comparison is not None
+    ours, theirs = fields_of(member.run, day), fields_on(member.run, member.comparison.solution, day)
+    return ours.thickness - theirs.thickness
+
+
+def _errors(member: Member, comparison: Comparison, day: float) -> Row:
+    row: Row = {"reference": comparison.solution.name, "error_day": day}
+    for field, norms in comparison.entries[0].norms.items():
+        row |= {f"{field}_{name}": value for name, value in asdict(norms).items()}
+    row |= {f"uncertainty_{field}": value for field, value in comparison.solution.uncertainty(day).items()}
+    return row | _worst_cell(member, day)
+
+
+def _worst_cell(member: Member, day: float) -> Row:
+    """Where the error of thickness is largest, degrees, and how many mean distances away the mesh is irregular."""
+    mesh = member.mesh
+    worst = int(np.argmax(np.abs(thickness_error(member, day))))
+    irregular = mesh.cell_points[mesh.n_edges_on_cell != 6]
+    nearest = float(np.linalg.norm(irregular - mesh.cell_points[worst], axis=1).min())
+    return {
+        "worst_longitude": float(np.degrees(mesh.lon_cell[worst])),
+        "worst_latitude": float(np.degrees(mesh.lat_cell[worst])),
+        "worst_to_irregular": nearest / (1e3 * member.spacing),
+    }

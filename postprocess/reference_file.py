@@ -1,0 +1,133 @@
+"""NetCDF files of reference solutions: harmonics, rounded to a part of their uncertainty, and where they come from."""
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from cases.registry import find_case
+from mesh.arrays import Array
+from mesh.files import written_aside
+from postprocess.harmonics import Coefficients, Harmonics, truncation_of
+from postprocess.reference import MEASURES, Reference
+from swe.errors import SetupError
+from swe.output import package_versions
+
+FOLDER = Path(__file__).parent / "references"
+"""Where the references that come with the package are."""
+
+
+@dataclass(frozen=True)
+class StoredField:
+    """A field of the file: its units, and the measure whose uncertainty says how finely it is stored."""
+
+    units: str
+    measure: str
+
+
+FIELDS = {
+    "vorticity": StoredField("s-1", "vorticity"),
+    "divergence": StoredField("s-1", "vorticity"),
+    "surface_height": StoredField("m", "thickness"),
+}
+"""Stored fields in the order of a state of the spectral model."""
+
+ROUNDING = 0.1
+"""Root mean square of the error of rounding, as a part of the uncertainty."""
+
+
+def stored_reference(case: str) -> Reference | None:
+    """The reference of a case that comes with the package, None if there is none."""
+    path = FOLDER / f"{case}.nc"
+    return read_reference(path) if path.exists() else None
+
+
+def write_reference(reference: Reference, path: Path) -> None:
+    """Write `reference`; coefficients are integers times a scale, which readers of NetCDF apply by themselves."""
+    with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
+        n_days, _, n_coefficients = reference.coefficients.shape
+        sizes = {
+            "day": n_days,
+            "coefficient": n_coefficients,
+            "part": 2,
+            "truncation": len(reference.truncations),
+            "coarser": len(reference.truncations) - 1,
+            "measure": len(MEASURES),
+        }
+        for name, size in sizes.items():
+            file.createDimension(name, size)
+        _write_variable(file, "day", ("day",), np.array(reference.days), "d", "days since the start")
+        _write_variable(file, "truncation", ("truncation",), np.array(reference.truncations, float), "1", "truncations")
+        _write_variable(
+            file,
+            "difference",
+            ("coarser", "day", "measure"),
+            reference.differences,
+            "1",
+            f"relative l2 norms of {', '.join(MEASURES)} of runs of lower truncation against this one",
+        )
+        for row, name in enumerate(FIELDS):
+            _write_field(file, name, reference.coefficients[:, row], _resolution(reference, row))
+        file.setncatts(
+            {
+                "title": f"Reference solution of {reference.case.title}",
+                "case": reference.case.name,
+                "parameters": json.dumps(reference.case.parameters()),
+                "source": "spectral-transform shallow-water model of trisk; " + reference.settings,
+                "references": reference.case.reference,
+                "history": reference.history,
+                "versions": json.dumps(package_versions()),
+                "comment": "coefficients of orthonormal spherical harmonics with orders m >= 0, all degrees of "
+                "order 0, then those of order 1, ...; parts are real and imaginary",
+            }
+        )
+
+
+def _resolution(reference: Reference, row: int) -> float:
+    """Step of the stored coefficients, at which rounding makes `ROUNDING` of the least uncertainty of the field."""
+    field = list(FIELDS.values())[row]
+    harmonics = Harmonics(truncation_of(reference.coefficients), reference.case.radius)
+    scale = 2 if field.measure == "thickness" else 0
+    magnitude = min(harmonics.root_mean_square(state[scale : scale + 1]) for state in reference.coefficients)
+    uncertainty = magnitude * reference.differences[-1, :, MEASURES.index(field.measure)].min()
+    # Parts of coefficients have errors of variance step^2 / 12, orders above 0 count twice in the mean square.
+    return float(ROUNDING * uncertainty * np.sqrt(4.0 * np.pi * 12.0 / (4.0 * len(harmonics.degree))))
+
+
+def _write_field(file: netCDF4.Dataset, name: str, coefficients: Coefficients, step: float) -> None:
+    variable = file.createVariable(
+        name, "i4", ("day", "part", "coefficient"), compression="zlib", complevel=9, shuffle=True
+    )
+    variable.setncatts({"units": FIELDS[name].units, "scale_factor": step, "long_name": f"harmonics of {name}"})
+    variable[:] = np.stack([coefficients.real, coefficients.imag], axis=1)
+
+
+def _write_variable(
+    file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], values: Array, units: str, long_name: str
+) -> None:
+    variable = file.createVariable(name, "f8", dimensions)
+    variable.setncatts({"units": units, "long_name": long_name})
+    variable[:] = values
+
+
+def read_reference(path: Path) -> Reference:
+    """Read a reference; raise `SetupError` where the file is none."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            file.set_auto_mask(False)
+            parts = np.stack([file[name][:] for name in FIELDS], axis=1)
+            return Reference(
+                case=find_case(file.case, json.loads(file.parameters)),
+                days=tuple(file["day"][:].tolist()),
+                coefficients=parts[:, :, 0] + 1j * parts[:, :, 1],
+                truncations=tuple(int(each) for each in file["truncation"][:]),
+                differences=file["difference"][:],
+                settings=file.source.split("; ")[-1],
+                history=file.history,
+            )
+    except (OSError, KeyError, IndexError, AttributeError, json.JSONDecodeError) as error:
+        raise SetupError(
+            f"{path} is no readable reference solution ({error}); make one with 'trisk reference'"
+        ) from error

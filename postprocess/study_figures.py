@@ -1,0 +1,198 @@
+"""Figures of a study of meshes: errors against resolution and quality, truncation errors, maps, conservation."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import CenteredNorm
+from matplotlib.figure import Figure
+
+from postprocess.mesh_study import CONSERVATION, Member, thickness_error
+from postprocess.plots import CENTRAL_LONGITUDE, ROUND_OFF_FLOOR, draw_mollweide
+from postprocess.projections import mollweide
+from postprocess.study_folder import Row
+from swe.constants import SECONDS_PER_DAY
+
+ERRORS = {
+    "thickness_l2": "thickness, l2",
+    "thickness_linf": "thickness, l∞",
+    "normal_velocity_l2": "normal velocity, l2",
+    "vorticity_l2": "vorticity, l2",
+}
+"""Errors that are drawn, and their titles."""
+
+QUALITIES = {
+    "sigma_avg": "σ avg: shortest / longest distance",
+    "q_min": "q min: worst triangle",
+    "residual": "distance to centroids (mean spacings)",
+    "truncation_divergence_l2": "truncation error of divergence, l2",
+    "truncation_perp_linf": "truncation error of perp, l∞",
+    "truncation_kinetic_energy_linf": "truncation error of kinetic energy, l∞",
+}
+"""Measures of a mesh that errors are drawn against, and their labels."""
+
+OPERATORS = ("gradient", "divergence", "curl", "perp", "kinetic_energy")
+MARKERS = "osD^vP*X"
+IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
+"""Colours of the dots on cells with so many sides."""
+
+MOST_DOTS = 400
+"""Dots are left out where irregular cells are more than this: they would hide the map."""
+
+
+def error_figure(rows: Sequence[Row], heading: str) -> Figure:
+    """Solution errors against the distance of cells, one line a family, with slopes of first and second order."""
+    names = [name for name in ERRORS if any(name in row for row in rows)]
+    figure, grid = _panels(len(names), 2)
+    for axes, name in zip(grid, names, strict=True):
+        _draw_families(axes, rows, name)
+        uncertainty = rows[0].get(f"uncertainty_{name.split('_')[0]}") if name.endswith("l2") else None
+        if uncertainty:
+            axes.axhline(uncertainty, color="grey", linestyle=":", label="uncertainty of the reference")
+        axes.set_title(f"relative error of {ERRORS[name]}", fontsize=10)
+    _finish(figure, grid, heading)
+    return figure
+
+
+def truncation_figure(rows: Sequence[Row], heading: str) -> Figure:
+    """Truncation errors of the operators against the distance of cells: l2 above, l∞ below."""
+    figure, grid = _panels(2 * len(OPERATORS), len(OPERATORS))
+    for axes, (norm, operator) in zip(grid, [(n, o) for n in ("l2", "linf") for o in OPERATORS], strict=True):
+        _draw_families(axes, rows, f"truncation_{operator}_{norm}")
+        axes.set_title(f"{operator.replace('_', ' ')}, {norm.replace('linf', 'l∞')}", fontsize=10)
+    _finish(figure, grid, heading)
+    return figure
+
+
+def quality_figure(rows: Sequence[Row], heading: str) -> Figure:
+    """The l2 error of thickness against measures of the mesh; one colour a family, the larger the finer the mesh."""
+    figure, grid = _panels(len(QUALITIES), 3)
+    families, sizes = _families(rows), sorted({row["requested_cells"] for row in rows})
+    for axes, (name, label) in zip(grid, QUALITIES.items(), strict=True):
+        for number, family in enumerate(families):
+            ours = [row for row in rows if row["family"] == family and "thickness_l2" in row]
+            axes.scatter(
+                [row[name] for row in ours],
+                [row["thickness_l2"] for row in ours],
+                s=[20.0 + 40.0 * sizes.index(row["requested_cells"]) for row in ours],
+                color=f"C{number}",
+                marker=MARKERS[number % len(MARKERS)],
+                label=family,
+                alpha=0.8,
+            )
+        axes.set_yscale("log")
+        if name not in ("sigma_avg", "q_min"):
+            axes.set_xscale("log")
+        axes.set_xlabel(label, fontsize=9)
+        axes.set_ylabel("relative l2 error of thickness", fontsize=9)
+        axes.grid(alpha=0.3, which="both")
+    _legend_below(figure, grid[0])
+    figure.suptitle(heading)
+    return figure
+
+
+def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
+    """Where the error of thickness lives: one map for each mesh, cell by cell, on one colour scale.
+
+    Dots mark pentagons (black) and heptagons (magenta), unless there are too many.
+    """
+    finished = [member for member in members if member.comparison is not None]
+    columns = min(2, len(finished))
+    rows = -(-len(finished) // columns)
+    figure = Figure(figsize=(6.4 * columns, 3.4 * rows + 0.9), layout="constrained")
+    grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
+    errors = [thickness_error(member, day) for member in finished]
+    norm = CenteredNorm(halfrange=float(np.median([np.abs(error).max() for error in errors])))
+    for axes, member, error in zip(grid, finished, errors, strict=False):
+        drawn = draw_mollweide(axes, member.mesh, error, {"cmap": "RdBu_r", "norm": norm})
+        _mark_irregular_cells(axes, member)
+        axes.set_title(f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error).max():.2g} m", fontsize=9)
+    for axes in grid[len(finished) :]:
+        axes.axis("off")
+    figure.colorbar(
+        drawn, ax=list(grid), location="bottom", shrink=0.6, aspect=40, extend="both", label="error of thickness (m)"
+    )
+    figure.suptitle(heading)
+    return figure
+
+
+def conservation_figure(members: Sequence[Member], heading: str) -> Figure:
+    """Relative changes of the invariants in time, without sign, one line a mesh."""
+    figure, grid = _panels(len(CONSERVATION), 2)
+    for axes, name in zip(grid, CONSERVATION, strict=True):
+        finished = [(member, member.run.series) for member in members if member.run is not None]
+        for number, (member, series) in enumerate(finished):
+            axes.semilogy(
+                series["time"] / SECONDS_PER_DAY,
+                np.maximum(np.abs(series[name]), ROUND_OFF_FLOOR),
+                color=f"C{number}",
+                label=f"{member.family}, {member.mesh.n_cells} cells",
+                linewidth=1.0,
+            )
+        axes.set_title(f"|{name.replace('_', ' ')}|", fontsize=10)
+        axes.set_xlabel("day", fontsize=9)
+        axes.set_ylabel("relative change", fontsize=9)
+        axes.grid(alpha=0.3)
+    _legend_below(figure, grid[0])
+    figure.suptitle(heading)
+    return figure
+
+
+def _panels(count: int, columns: int) -> tuple[Figure, list[Axes]]:
+    columns = min(columns, count)
+    rows = -(-count // columns)
+    figure = Figure(figsize=(3.9 * columns + 1.0, 3.6 * rows + 0.8), layout="constrained")
+    return figure, list(np.atleast_1d(figure.subplots(rows, columns)).ravel())
+
+
+def _families(rows: Sequence[Row]) -> list[str]:
+    return list(dict.fromkeys(str(row["family"]) for row in rows))
+
+
+def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
+    """One line a family on logarithmic axes, and the slopes of first and second order."""
+    for number, family in enumerate(_families(rows)):
+        ours = [row for row in rows if row["family"] == family and row.get(name, 0.0)]
+        axes.loglog(
+            [row["spacing_km"] for row in ours],
+            [row[name] for row in ours],
+            marker=MARKERS[number % len(MARKERS)],
+            color=f"C{number}",
+            label=family,
+            linewidth=1.0,
+            markersize=5,
+        )
+    _slope_guides(axes, rows, name)
+    axes.set_xlabel("mean distance between cells (km)", fontsize=9)
+    axes.grid(alpha=0.3, which="both")
+
+
+def _slope_guides(axes: Axes, rows: Sequence[Row], name: str) -> None:
+    points = [(row["spacing_km"], row[name]) for row in rows if row.get(name, 0.0)]
+    if len({x for x, _ in points}) < 2:
+        return
+    x = np.array([min(x for x, _ in points), max(x for x, _ in points)])
+    anchor = min(y for spacing, y in points if spacing == x[1]) if x[1] else 1.0
+    for order, style in ((1, "--"), (2, "-.")):
+        axes.loglog(x, 0.7 * anchor * (x / x[1]) ** order, color="grey", linestyle=style, label=f"order {order}")
+
+
+def _finish(figure: Figure, grid: Sequence[Axes], heading: str) -> None:
+    _legend_below(figure, grid[0])
+    figure.suptitle(heading)
+
+
+def _legend_below(figure: Figure, axes: Axes) -> None:
+    handles, labels = axes.get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+
+
+def _mark_irregular_cells(axes: Axes, member: Member) -> None:
+    sides = member.mesh.n_edges_on_cell
+    if np.count_nonzero(sides != 6) > MOST_DOTS:
+        return
+    for count, colour in IRREGULAR_COLOURS.items():
+        cells = np.flatnonzero(sides == count)
+        longitude = (member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE + np.pi) % (2.0 * np.pi) - np.pi
+        x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
+        axes.plot(x, y, ".", color=colour, markersize=3)

@@ -1,0 +1,94 @@
+"""What studies share: runs that are not run again, tables as CSV, fitted orders."""
+
+import csv
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cases.base import Case
+from mesh.io import mesh_hash
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.runs import Run, read_run
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import RunError
+from swe.output import RECORD_FILE
+from swe.simulation import Simulation
+
+TABLE_FILE = "study.csv"
+
+Tell = Callable[[str], None]
+"""Hears a line on what has been done."""
+
+Row = dict[str, Any]
+"""One line of a table by column: numbers and words."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run that a study needs: `case` on `mesh` for `days`, a snapshot every `snapshot_days`, in `directory`."""
+
+    directory: Path
+    case: Case
+    mesh: VoronoiMesh
+    days: float
+    snapshot_days: float
+    time_step: float | None = None
+
+    def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
+        """The run, made unless it is there already; where it fails there is none, but the reason."""
+        if not self._is_finished():
+            tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
+            simulation = Simulation(
+                self.mesh,
+                self.case,
+                self.directory,
+                time_step=self.time_step,
+                snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
+                overwrite=True,
+            )
+            try:
+                simulation.run(self.days, progress)
+            except RunError as error:
+                tell(f"{self.directory.name}: {error}")
+                return None, str(error)
+        return read_run(self.directory), ""
+
+    def _is_finished(self) -> bool:
+        """Whether the directory holds just this run, on this very mesh and run to the end."""
+        try:
+            record = json.loads((self.directory / RECORD_FILE).read_text())
+            configuration = record["configuration"]
+            return bool(
+                record["status"] == "completed"
+                and record["case"] == self.case.name
+                and record["parameters"] == json.loads(json.dumps(self.case.parameters()))
+                and record["days"] == self.days
+                and configuration["snapshot_interval"] == self.snapshot_days * SECONDS_PER_DAY
+                and configuration["sampling"] == "point"
+                and self.time_step in (None, configuration["time_step"])
+                and record["mesh_hash"] == mesh_hash(self.mesh.scaled(self.case.radius))
+            )
+        except (FileNotFoundError, json.JSONDecodeError, KeyError):
+            return False
+
+
+def write_table(rows: Sequence[Row], path: Path) -> None:
+    """Write rows as CSV; a column is empty where a row lacks it."""
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with path.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def fitted_order(size: Sequence[float], error: Sequence[float]) -> float:
+    """Slope of the least-squares line through log(error) over log(size); NaN for fewer than two points."""
+    x, y = np.array(size, dtype=float), np.array(error, dtype=float)
+    usable = y > 0.0
+    if np.count_nonzero(usable) < 2:
+        return float("nan")
+    return float(np.polyfit(np.log(x[usable]), np.log(y[usable]), 1)[0])

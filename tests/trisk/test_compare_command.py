@@ -1,0 +1,77 @@
+"""`trisk compare`: what it prints and writes, and how it refuses."""
+
+import json
+import sys
+from pathlib import Path
+
+import pytest
+
+from cases import Williamson2
+from mesh import scvt_mesh
+from postprocess import compare_maps
+from swe import Simulation
+from trisk.main import main
+
+
+@pytest.fixture
+def compare(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    """Run `trisk compare` in this process, drawing thickness alone; return exit code, output and error output."""
+    monkeypatch.setattr(compare_maps, "FIELDS", {"thickness": compare_maps.FIELDS["thickness"]})
+    monkeypatch.setattr(compare_maps, "ROWS", 20)
+    monkeypatch.setattr(compare_maps, "COLUMNS", 40)
+
+    def call(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["trisk", "compare", *map(str, arguments)])
+        with pytest.raises(SystemExit) as stop:
+            main()
+        captured = capsys.readouterr()
+        code = stop.value.code
+        return (code if isinstance(code, int) else 0), captured.out, captured.err
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def runs(tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+    folder = tmp_path_factory.mktemp("runs")
+    for cells in (42, 162):
+        Simulation(scvt_mesh(cells), Williamson2(), folder / f"run{cells}").run(1, progress=False)
+    return [folder / "run42", folder / "run162"]
+
+
+def test_tables_and_maps(compare, runs: list[Path]) -> None:
+    code, out, err = compare(*runs)
+    assert (code, err) == (0, "")
+    for words in ("reference: exact solution", "thickness", "normal velocity", "vorticity", "enstrophy", "42", "162"):
+        assert words in out
+    maps = sorted((runs[0] / "figures").glob("compare_*.png"))
+    assert len(maps) == 2
+    assert out.split()[-2:] == [str(path) for path in maps]
+
+
+def test_json(compare, runs: list[Path], tmp_path: Path) -> None:
+    code, out, _ = compare(*runs, "--reference", runs[0], "--day", 1, "-o", tmp_path / "maps", "--json")
+    assert code == 0
+    record = json.loads(out)
+    assert record["case"] == "williamson2"
+    assert record["reference"].endswith("run42, 42 cells")
+    first, second = record["entries"]
+    assert first["norms"] == {}
+    assert set(second["norms"]) == {"thickness", "velocity", "vorticity"}
+    assert second["norms"]["thickness"]["l2"] > 0
+    assert abs(second["conservation"]["mass_change"]) < 1e-13
+    assert all(Path(path).parent == tmp_path / "maps" and Path(path).exists() for path in record["maps"])
+
+
+def test_bad_input_is_one_sentence_and_code_2(compare, runs: list[Path], tmp_path: Path) -> None:
+    for arguments, words in (
+        ((runs[0], "--reference", runs[0]), "nothing but itself"),
+        ((runs[0], "--day", 4), "no snapshot of day 4"),
+        ((runs[0], "--reference", "nowhere.nc"), "there is no reference 'nowhere.nc'"),
+        ((tmp_path,), "holds no readable run"),
+    ):
+        code, out, err = compare(*arguments)
+        assert (code, out) == (2, ""), arguments
+        assert err.startswith("error: ")
+        assert err.count("\n") == 1
+        assert words in err
