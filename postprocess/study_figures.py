@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from postprocess.mesh_study import CONSERVATION, Member, thickness_error
 from postprocess.plots import CENTRAL_LONGITUDE, ROUND_OFF_FLOOR, draw_mollweide
@@ -35,6 +36,9 @@ OPERATORS = ("gradient", "divergence", "curl", "perp", "kinetic_energy")
 MARKERS = "osD^vP*X"
 IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
 """Colours of the dots on cells with so many sides."""
+
+SHORT_AXIS = 30.0
+"""Logarithmic axes over a smaller ratio than this have labels at 1, 2 and 5 times powers of ten."""
 
 MOST_DOTS = 400
 """Dots are left out where irregular cells are more than this: they would hide the map."""
@@ -82,7 +86,7 @@ def quality_figure(rows: Sequence[Row], heading: str) -> Figure:
             )
         axes.set_yscale("log")
         if name not in ("sigma_avg", "q_min"):
-            axes.set_xscale("log")
+            _logarithmic_abscissa(axes, [row[name] for row in rows])
         axes.set_xlabel(label, fontsize=9)
         axes.set_ylabel("relative l2 error of thickness", fontsize=9)
         axes.grid(alpha=0.3, which="both")
@@ -123,8 +127,8 @@ def conservation_figure(members: Sequence[Member], heading: str) -> Figure:
         finished = [(member, member.run.series) for member in members if member.run is not None]
         for number, (member, series) in enumerate(finished):
             axes.semilogy(
-                series["time"] / SECONDS_PER_DAY,
-                np.maximum(np.abs(series[name]), ROUND_OFF_FLOOR),
+                series["time"][1:] / SECONDS_PER_DAY,
+                np.maximum(np.abs(series[name][1:]), ROUND_OFF_FLOOR),
                 color=f"C{number}",
                 label=f"{member.family}, {member.mesh.n_cells} cells",
                 linewidth=1.0,
@@ -153,7 +157,7 @@ def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
     """One line a family on logarithmic axes, and the slopes of first and second order."""
     for number, family in enumerate(_families(rows)):
         ours = [row for row in rows if row["family"] == family and row.get(name, 0.0)]
-        axes.loglog(
+        axes.plot(
             [row["spacing_km"] for row in ours],
             [row[name] for row in ours],
             marker=MARKERS[number % len(MARKERS)],
@@ -163,6 +167,8 @@ def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
             markersize=5,
         )
     _slope_guides(axes, rows, name)
+    axes.set_yscale("log")
+    _logarithmic_abscissa(axes, [row["spacing_km"] for row in rows])
     axes.set_xlabel("mean distance between cells (km)", fontsize=9)
     axes.grid(alpha=0.3, which="both")
 
@@ -172,9 +178,18 @@ def _slope_guides(axes: Axes, rows: Sequence[Row], name: str) -> None:
     if len({x for x, _ in points}) < 2:
         return
     x = np.array([min(x for x, _ in points), max(x for x, _ in points)])
-    anchor = min(y for spacing, y in points if spacing == x[1]) if x[1] else 1.0
+    anchor = min(y for spacing, y in points if spacing == x[1])
     for order, style in ((1, "--"), (2, "-.")):
-        axes.loglog(x, 0.7 * anchor * (x / x[1]) ** order, color="grey", linestyle=style, label=f"order {order}")
+        axes.plot(x, 0.7 * anchor * (x / x[1]) ** order, color="grey", linestyle=style, label=f"order {order}")
+
+
+def _logarithmic_abscissa(axes: Axes, values: Sequence[float]) -> None:
+    """Make the horizontal axis logarithmic, with labels neither missing nor overlapping over about a decade."""
+    axes.set_xscale("log")
+    if max(values) < SHORT_AXIS * min(values):
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        axes.xaxis.set_minor_formatter(NullFormatter())
 
 
 def _finish(figure: Figure, grid: Sequence[Axes], heading: str) -> None:

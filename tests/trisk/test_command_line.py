@@ -10,23 +10,6 @@ import netCDF4
 import numpy as np
 import pytest
 
-from trisk.main import main
-
-
-@pytest.fixture
-def trisk(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    """Run the command line in this process; return exit code, output and error output."""
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["trisk", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        code = stop.value.code
-        return (code if isinstance(code, int) else 0), captured.out, captured.err
-
-    return call
-
 
 @pytest.fixture
 def mesh_file(trisk, tmp_path: Path) -> Path:

@@ -1,7 +1,7 @@
 """`trisk compare`: what it prints and writes, and how it refuses."""
 
 import json
-import sys
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -10,25 +10,16 @@ from cases import Williamson2
 from mesh import scvt_mesh
 from postprocess import compare_maps
 from swe import Simulation
-from trisk.main import main
+from tests.trisk.conftest import Call
 
 
 @pytest.fixture
-def compare(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
-    """Run `trisk compare` in this process, drawing thickness alone; return exit code, output and error output."""
+def compare(trisk: Call, monkeypatch: pytest.MonkeyPatch) -> Call:
+    """Run `trisk compare`, drawing small maps of thickness alone."""
     monkeypatch.setattr(compare_maps, "FIELDS", {"thickness": compare_maps.FIELDS["thickness"]})
     monkeypatch.setattr(compare_maps, "ROWS", 20)
     monkeypatch.setattr(compare_maps, "COLUMNS", 40)
-
-    def call(*arguments: object) -> tuple[int, str, str]:
-        monkeypatch.setattr(sys, "argv", ["trisk", "compare", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stop:
-            main()
-        captured = capsys.readouterr()
-        code = stop.value.code
-        return (code if isinstance(code, int) else 0), captured.out, captured.err
-
-    return call
+    return partial(trisk, "compare")
 
 
 @pytest.fixture(scope="module")
