@@ -4,16 +4,19 @@ VENV := .venv
 BIN := $(VENV)/bin
 CELLS := 40962
 RUN := runs/tc5
+STUDY := runs/verification
+GALEWSKY_CELLS := 2562 10242 40962 163842
 
-.PHONY: tc5 test lint format wheel-test clean
+.SECONDARY:
+.PHONY: tc5 test lint format wheel-test verification references clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
 	$(BIN)/trisk plot $(RUN)
 
-runs/mesh.$(CELLS).nc: | $(VENV)/installed
+runs/mesh.%.nc: | $(VENV)/installed
 	mkdir -p runs
-	$(BIN)/trisk mesh --cells $(CELLS) -o $@
+	$(BIN)/trisk mesh --cells $* -o $@
 
 test: $(VENV)/installed-dev  ## The test suite
 	$(BIN)/python -m pytest
@@ -40,6 +43,24 @@ $(VENV)/installed: pyproject.toml
 $(VENV)/installed-dev: pyproject.toml $(VENV)/installed
 	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
+
+verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%/run.json)  ## All of docs/verification.md; hours
+	$(BIN)/trisk study mesh williamson2 --cells 2562 --cells 10242 --cells 40962 -o $(STUDY)/williamson2
+	$(BIN)/trisk study mesh williamson5 --cells 2562 --cells 10242 --cells 40962 --family scvt --family refined-circle \
+		--family nested --days 50 --error-day 15 -o $(STUDY)/williamson5
+	$(BIN)/trisk study mesh williamson6 --cells 2562 --cells 10242 --family scvt -o $(STUDY)/williamson6
+	$(BIN)/trisk study mesh galewsky $(GALEWSKY_CELLS:%=--cells %) --family scvt -o $(STUDY)/galewsky
+	$(BIN)/trisk study time williamson5 --cells 2562 --dt 150 --dt 300 --dt 600 --dt 1200 -o $(STUDY)/time
+	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/galewsky/runs/scvt-%) -o $(STUDY)/galewsky/maps
+	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/jet-%) $(foreach day,1 2 3 4 5 6,--day $(day)) -o $(STUDY)/jet
+	$(BIN)/trisk spectra $(STUDY)/williamson5/runs/scvt-40962 --day 15 --day 50 -o $(STUDY)/spectra
+
+$(STUDY)/jet-%/run.json: runs/mesh.%.nc
+	$(BIN)/trisk run galewsky --set perturbed=false --mesh $< --force -o $(@D)
+
+references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
+	for case in williamson5 williamson6 galewsky; do \
+		$(BIN)/trisk reference $$case -o postprocess/references/$$case.nc || exit 1; done
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

@@ -88,12 +88,12 @@ class Case(ABC):
 
     def velocity(self, longitude: Array, latitude: Array, time: float = 0.0) -> tuple[Array, Array]:
         """Eastward and northward velocity, m/s, at `time` seconds; differences of the streamfunction by default."""
-        eastward, northward = gradient(self._evaluated(self.streamfunction, time), longitude, latitude)
+        eastward, northward = gradient(self.evaluated(self.streamfunction, time), longitude, latitude)
         return -northward / self.radius, eastward / self.radius
 
     def vorticity(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Relative vorticity, 1/s, at `time` seconds; differences of the streamfunction by default."""
-        return laplacian(self._evaluated(self.streamfunction, time), longitude, latitude) / self.radius**2
+        return laplacian(self.evaluated(self.streamfunction, time), longitude, latitude) / self.radius**2
 
     def topography(self, longitude: Array, latitude: Array) -> Array:
         """Height of the bottom, m; flat unless the case says otherwise."""
@@ -109,9 +109,9 @@ class Case(ABC):
         Thickness is that of the centres, or the mean over each cell where `sampling` is "mean". The streamfunction
         is taken at vertices, so that the velocity has no discrete divergence.
         """
-        streamfunction = self._evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
+        streamfunction = self.evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
         return State(
-            sample_cells(mesh, self._evaluated(self.thickness, time), sampling),
+            sample_cells(mesh, self.evaluated(self.thickness, time), sampling),
             normal_velocity_from_streamfunction(mesh, streamfunction),
         )
 
@@ -121,17 +121,17 @@ class Case(ABC):
 
     def topography_on(self, mesh: VoronoiMesh, sampling: Sampling = "point") -> Array:
         """Height of the bottom at cells (n_cells,), m, at the centres or as means over the cells."""
-        return sample_cells(mesh, self._evaluated(self.topography), sampling)
+        return sample_cells(mesh, self.evaluated(self.topography), sampling)
 
     def coriolis_on(self, mesh: VoronoiMesh) -> Array:
         """Coriolis parameter at vertices (n_vertices,), 1/s."""
-        return self._evaluated(self.coriolis)(mesh.lon_vertex, mesh.lat_vertex)
+        return self.evaluated(self.coriolis)(mesh.lon_vertex, mesh.lat_vertex)
 
     def parameters(self) -> dict[str, float]:
         """Parameters by name."""
         return asdict(self)
 
-    def _evaluated(self, function: Callable[..., Array], *time: float) -> SphereFunction:
+    def evaluated(self, function: Callable[..., Array], *time: float) -> SphereFunction:
         """`function` of this case as one of longitude and latitude; raises `SetupError` where it fails."""
 
         def field(longitude: Array, latitude: Array) -> Array:

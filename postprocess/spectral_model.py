@@ -35,16 +35,16 @@ class SpectralModel:
         wavenumber = self.harmonics.laplacian / self.harmonics.laplacian.min()
         self._damping = wavenumber**HYPERDIFFUSION_POWER / (damping_hours * SECONDS_PER_HOUR)
         fine = Harmonics(truncation, case.radius, TOPOGRAPHY_OVERSAMPLING)
-        self.topography = fine.from_grid(case.topography(*fine.points))
+        self.topography = fine.from_grid(case.evaluated(case.topography)(*fine.points))
         self._topography_on_grid = self.harmonics.to_grid(self.topography)
-        self._coriolis = case.coriolis(*self.harmonics.points)
+        self._coriolis = case.evaluated(case.coriolis)(*self.harmonics.points)
 
     def initial_state(self) -> Coefficients:
         """Coefficients of the case's initial state, whose flow has no divergence."""
-        harmonics = self.harmonics
-        longitude, latitude = harmonics.points
-        streamfunction = self.case.streamfunction(longitude, latitude)
-        surface = self.case.thickness(longitude, latitude) + self.case.topography(longitude, latitude)
+        harmonics, case = self.harmonics, self.case
+        streamfunction = case.evaluated(case.streamfunction)(*harmonics.points)
+        thickness = case.evaluated(case.thickness)(*harmonics.points)
+        surface = thickness + case.evaluated(case.topography)(*harmonics.points)
         vorticity = harmonics.laplacian * harmonics.from_grid(streamfunction)
         return np.stack([vorticity, np.zeros_like(vorticity), harmonics.from_grid(surface)])
 
