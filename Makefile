@@ -44,7 +44,7 @@ $(VENV)/installed-dev: pyproject.toml $(VENV)/installed
 	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --editable '.[dev]'
 	touch $@
 
-verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%/run.json)  ## All of docs/verification.md; hours
+verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%.done)  ## All of docs/verification.md; hours
 	$(BIN)/trisk study mesh williamson2 --cells 2562 --cells 10242 --cells 40962 -o $(STUDY)/williamson2
 	$(BIN)/trisk study mesh williamson5 --cells 2562 --cells 10242 --cells 40962 --family scvt --family refined-circle \
 		--family nested --days 50 --error-day 15 -o $(STUDY)/williamson5
@@ -55,8 +55,10 @@ verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%/run.json) 
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/jet-%) $(foreach day,1 2 3 4 5 6,--day $(day)) -o $(STUDY)/jet
 	$(BIN)/trisk spectra $(STUDY)/williamson5/runs/scvt-40962 --day 15 --day 50 -o $(STUDY)/spectra
 
-$(STUDY)/jet-%/run.json: runs/mesh.%.nc
-	$(BIN)/trisk run galewsky --set perturbed=false --mesh $< --force -o $(@D)
+$(STUDY)/jet-%.done: runs/mesh.%.nc
+	mkdir -p $(STUDY)
+	$(BIN)/trisk run galewsky --set perturbed=false --mesh $< --force -o $(STUDY)/jet-$*
+	touch $@
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
 	for case in williamson5 williamson6 galewsky; do \

@@ -80,14 +80,14 @@ class Harmonics:
         return -self._root * rotation, -self._root * gradient
 
     def at_points(self, coefficients: Coefficients, longitude: Array, latitude: Array) -> Array:
-        """Values of a scalar field at points (n,), rad."""
+        """Values of a scalar field at points, longitudes and latitudes of one shape, rad."""
         values: Array = self._synthesize(coefficients[None, :], 0, longitude, latitude)[0]
         return values
 
     def velocity_at_points(
         self, vorticity: Coefficients, divergence: Coefficients, longitude: Array, latitude: Array
     ) -> tuple[Array, Array]:
-        """Zonal and meridional velocity, m/s, at points (n,), rad."""
+        """Zonal and meridional velocity, m/s, at points, longitudes and latitudes of one shape, rad."""
         southward, eastward = self._synthesize(self._potentials(vorticity, divergence), 1, longitude, latitude)
         return eastward, -southward
 
@@ -109,7 +109,7 @@ class Harmonics:
         return np.stack([-self._inverse_root * divergence, -self._inverse_root * vorticity])
 
     def _synthesize(self, coefficients: Coefficients, spin: int, longitude: Array, latitude: Array) -> Array:
-        places = np.stack([0.5 * np.pi - latitude, longitude % (2.0 * np.pi)], axis=-1)
+        places = np.stack([0.5 * np.pi - latitude.ravel(), longitude.ravel() % (2.0 * np.pi)], axis=-1)
         values: Array = ducc0.sht.synthesis_general(
             alm=coefficients,
             spin=spin,
@@ -117,7 +117,7 @@ class Harmonics:
             loc=places,
             epsilon=POINT_ACCURACY,
         )
-        return values
+        return values.reshape(-1, *longitude.shape)
 
 
 def degrees(truncation: int) -> Index:

@@ -4,10 +4,10 @@ A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh and
 `study.csv` one row for each. What is there and fits is not made again, so a study that was interrupted goes on.
 """
 
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 
 from cases.base import Case
@@ -19,21 +19,13 @@ from mesh.quality import mesh_quality
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.compare import Comparison, compare, fields_of, fields_on
 from postprocess.families import FAMILIES
+from postprocess.folders import prepared_folder
 from postprocess.runs import Run
-from postprocess.study_folder import TABLE_FILE, Row, Task, Tell, write_table
+from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, write_table
 from postprocess.truncation import truncation_errors
 from swe.errors import SetupError
-from swe.output import RECORD_FILE
 
-CONSERVATION = (
-    "mass_change",
-    "absolute_vorticity_change",
-    "total_energy_change_of_total",
-    "potential_enstrophy_change",
-)
-"""Series of diagnostics whose largest value, without sign, is in the table."""
-
-LARGEST_CELLS = 655362
+LEAST_CELLS, LARGEST_CELLS = 162, 655362
 
 
 @dataclass(frozen=True)
@@ -55,9 +47,10 @@ class Plan:
             if family not in FAMILIES:
                 raise SetupError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
         for cells in self.cells:
-            if icosahedral_level(cells) is None or cells > LARGEST_CELLS:
+            if icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
                 raise SetupError(
-                    f"{cells} cells are no bisected icosahedron; choose among 162, 642, 2562, ... up to {LARGEST_CELLS}"
+                    f"{cells} cells are no bisected icosahedron of a fit size; choose among {LEAST_CELLS}, 642, 2562, "
+                    f"... up to {LARGEST_CELLS}"
                 )
         if not 0.0 < self.error_day <= self.days:
             raise SetupError(
@@ -84,16 +77,17 @@ class Member:
 
 
 def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[Row]]:
-    """Make what is missing of a study, coarse meshes first, and write its table; return its members and their rows."""
-    plan.folder.mkdir(parents=True, exist_ok=True)
-    members: list[Member] = []
+    """Make what is missing of a study, coarse meshes first, and write its table; return finest members and all rows."""
+    prepared_folder(plan.folder)
+    finest: list[Member] = []
     rows: list[Row] = []
-    for cells in sorted(plan.cells):
-        for family in plan.families:
-            members.append(_member(plan, family, cells, progress, tell))
-            rows.append(row_of(members[-1], plan.error_day))
+    for cells in sorted(set(plan.cells)):
+        finest = []  # those of coarser meshes are let go, they would fill the memory
+        for family in dict.fromkeys(plan.families):
+            finest.append(_member(plan, family, cells, progress, tell))
+            rows.append(row_of(finest[-1], plan.error_day))
             write_table(rows, plan.folder / TABLE_FILE)
-    return members, rows
+    return finest, rows
 
 
 def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Member:
@@ -103,7 +97,9 @@ def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> 
     task = Task(plan.folder / "runs" / name, plan.case, mesh, plan.days, plan.error_day)
     run, failure = task.carry_out(progress, tell)
     comparison = None if run is None else _comparison(run, plan.error_day, tell)
-    return Member(family, cells, mesh.scaled(plan.case.radius), run, comparison, failure)
+    if comparison is not None:
+        run = comparison.entries[0].run  # the same, read once more
+    return Member(family, cells, mesh.scaled(plan.case.radius) if run is None else run.mesh, run, comparison, failure)
 
 
 def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
@@ -116,11 +112,22 @@ def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
 
 
 def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
-    if not path.exists():
+    """Read a mesh, or make it where it is missing or was made otherwise."""
+    origin = f"mesh of a study: {FAMILIES[family].description}; {cells} cells asked for"
+    if not (path.exists() and _origin(path) == origin):
         tell(f"{path.stem}: making the mesh")
         path.parent.mkdir(exist_ok=True)
-        write_mesh(FAMILIES[family].make(cells), path, f"mesh of a study: {FAMILIES[family].description}")
+        write_mesh(FAMILIES[family].make(cells), path, origin)
     return read_mesh(path)
+
+
+def _origin(path: Path) -> str:
+    """What a mesh file says of how it was made; nothing where it is not readable."""
+    try:
+        with netCDF4.Dataset(path) as file:
+            return str(file.history)
+    except (OSError, AttributeError):
+        return ""
 
 
 def row_of(member: Member, error_day: float) -> Row:
@@ -138,8 +145,7 @@ def row_of(member: Member, error_day: float) -> Row:
         row |= _errors(member, member.comparison, error_day)
     if member.run is not None:
         row |= {name: float(np.abs(member.run.series[name]).max()) for name in CONSERVATION}
-        record = json.loads((member.run.directory / RECORD_FILE).read_text())
-        row |= {"time_step_s": record["configuration"]["time_step"], "steps": record["steps"]}
+        row |= {"time_step_s": member.run.time_step, "steps": member.run.steps}
     return row
 
 

@@ -1,5 +1,6 @@
 """Reference solutions by the spectral model: made, stored as harmonics in one small file a case, read and evaluated."""
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -8,6 +9,7 @@ import numpy as np
 from cases.base import Case
 from mesh.arrays import Array
 from postprocess.harmonics import Coefficients, Harmonics, truncated, truncation_of
+from postprocess.runs import DAY_TOLERANCE, days_in_words
 from postprocess.spectral_model import SpectralModel
 from swe.errors import SetupError
 
@@ -49,17 +51,19 @@ class Reference:
         return dict(zip(MEASURES, self.differences[-1, self._row(day)].tolist(), strict=True))
 
     def thickness(self, longitude: Array, latitude: Array, day: float) -> Array:
-        """Thickness of the fluid at points (n,), m: surface height less the exact topography."""
+        """Thickness of the fluid at points, m: surface height less the exact topography."""
         harmonics, (_, _, surface) = self._on(day)
-        return harmonics.at_points(surface, longitude, latitude) - self.case.topography(longitude, latitude)
+        return harmonics.at_points(surface, longitude, latitude) - self.case.evaluated(self.case.topography)(
+            longitude, latitude
+        )
 
     def velocity(self, longitude: Array, latitude: Array, day: float) -> tuple[Array, Array]:
-        """Zonal and meridional velocity at points (n,), m/s."""
+        """Zonal and meridional velocity at points, m/s."""
         harmonics, (vorticity, divergence, _) = self._on(day)
         return harmonics.velocity_at_points(vorticity, divergence, longitude, latitude)
 
     def vorticity(self, longitude: Array, latitude: Array, day: float) -> Array:
-        """Relative vorticity at points (n,), 1/s."""
+        """Relative vorticity at points, 1/s."""
         harmonics, (vorticity, _, _) = self._on(day)
         return harmonics.at_points(vorticity, longitude, latitude)
 
@@ -68,10 +72,11 @@ class Reference:
         return Harmonics(truncation_of(coefficients), self.case.radius), coefficients
 
     def _row(self, day: float) -> int:
-        if day not in self.days:
-            known = ", ".join(f"{each:g}" for each in self.days)
+        rows = np.flatnonzero(np.abs(np.array(self.days) - day) < DAY_TOLERANCE)
+        if not len(rows):
+            known = days_in_words(self.days)
             raise SetupError(f"the reference of {self.case.name} has no day {day:g}; choose among {known}")
-        return self.days.index(day)
+        return int(rows[0])
 
 
 def make_reference(
@@ -84,9 +89,10 @@ def make_reference(
     """
     if truncation < LEAST_TRUNCATION:
         raise SetupError(f"the truncation is {truncation}; give at least {LEAST_TRUNCATION}")
-    if not (days and min(days) > 0.0):
+    wrong = [day for day in days if not (math.isfinite(day) and day > 0.0)]
+    if wrong or not days:
         raise SetupError(
-            f"a reference of {case.name} cannot be given on day {min(days, default=0.0):g}; give later days"
+            f"a reference of {case.name} cannot be given on day {min(wrong, default=0.0):g}; give later days"
         )
     if not damping_hours > 0.0:
         raise SetupError(f"the damping time is {damping_hours:g} hours; it must be positive, or inf for no damping")

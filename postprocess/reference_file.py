@@ -12,11 +12,9 @@ from mesh.arrays import Array
 from mesh.files import written_aside
 from postprocess.harmonics import Coefficients, Harmonics, truncation_of
 from postprocess.reference import MEASURES, Reference
+from postprocess.stored_references import stored_path
 from swe.errors import SetupError
 from swe.output import package_versions
-
-FOLDER = Path(__file__).parent / "references"
-"""Where the references that come with the package are."""
 
 
 @dataclass(frozen=True)
@@ -34,14 +32,16 @@ FIELDS = {
 }
 """Stored fields in the order of a state of the spectral model."""
 
+LARGEST_INTEGER = 2**31 - 1
+
 ROUNDING = 0.1
 """Root mean square of the error of rounding, as a part of the uncertainty."""
 
 
 def stored_reference(case: str) -> Reference | None:
     """The reference of a case that comes with the package, None if there is none."""
-    path = FOLDER / f"{case}.nc"
-    return read_reference(path) if path.exists() else None
+    path = stored_path(case)
+    return None if path is None else read_reference(path)
 
 
 def write_reference(reference: Reference, path: Path) -> None:
@@ -86,14 +86,19 @@ def write_reference(reference: Reference, path: Path) -> None:
 
 
 def _resolution(reference: Reference, row: int) -> float:
-    """Step of the stored coefficients, at which rounding makes `ROUNDING` of the least uncertainty of the field."""
-    field = list(FIELDS.values())[row]
+    """Step of the stored coefficients, at which rounding makes `ROUNDING` of the least uncertainty of the field.
+
+    Where that is tiny, the step is the least at which the largest coefficient still is a 32-bit integer.
+    """
+    measure = list(FIELDS.values())[row].measure
     harmonics = Harmonics(truncation_of(reference.coefficients), reference.case.radius)
-    scale = 2 if field.measure == "thickness" else 0
-    magnitude = min(harmonics.root_mean_square(state[scale : scale + 1]) for state in reference.coefficients)
-    uncertainty = magnitude * reference.differences[-1, :, MEASURES.index(field.measure)].min()
+    yardstick = list(FIELDS).index("surface_height" if measure == "thickness" else "vorticity")
+    magnitude = min(harmonics.root_mean_square(state[[yardstick]]) for state in reference.coefficients)
+    uncertainty = magnitude * reference.differences[-1, :, MEASURES.index(measure)].min()
     # Parts of coefficients have errors of variance step^2 / 12, orders above 0 count twice in the mean square.
-    return float(ROUNDING * uncertainty * np.sqrt(4.0 * np.pi * 12.0 / (4.0 * len(harmonics.degree))))
+    wanted = ROUNDING * uncertainty * np.sqrt(4.0 * np.pi * 12.0 / (4.0 * len(harmonics.degree)))
+    largest = np.abs(reference.coefficients[:, row]).max()
+    return float(max(wanted, largest / LARGEST_INTEGER, np.finfo(np.float64).tiny))
 
 
 def _write_field(file: netCDF4.Dataset, name: str, coefficients: Coefficients, step: float) -> None:
@@ -101,7 +106,9 @@ def _write_field(file: netCDF4.Dataset, name: str, coefficients: Coefficients, s
         name, "i4", ("day", "part", "coefficient"), compression="zlib", complevel=9, shuffle=True
     )
     variable.setncatts({"units": FIELDS[name].units, "scale_factor": step, "long_name": f"harmonics of {name}"})
-    variable[:] = np.stack([coefficients.real, coefficients.imag], axis=1)
+    parts = np.stack([coefficients.real, coefficients.imag], axis=1)
+    variable.set_auto_scale(False)
+    variable[:] = np.round(parts / step).astype(np.int32)
 
 
 def _write_variable(

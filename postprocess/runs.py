@@ -9,6 +9,7 @@ import netCDF4
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.errors import MeshError
 from mesh.io import read_mesh
 from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
@@ -36,7 +37,7 @@ class Run:
     """A run directory: its mesh in metres, its case, the days of its snapshots and its diagnostics by name.
 
     `case` is the name of the case and `parameters` are what it was run with; `sampling` says what the initial thickness
-    was, see `mesh.quadrature`.
+    was, see `mesh.quadrature`. `time_step` is the longest step, s, and `steps` their number.
     """
 
     directory: Path
@@ -44,16 +45,22 @@ class Run:
     case: str
     parameters: dict[str, float]
     sampling: Sampling
+    time_step: float
+    steps: int
     days: Array
     series: dict[str, Array]
 
     def snapshot(self, day: float) -> Snapshot:
         """The snapshot of `day`; raise `SetupError` where there is none."""
+        self.require_snapshot(day)
+        return self._read(int(np.argmin(np.abs(self.days - day))))
+
+    def require_snapshot(self, day: float) -> None:
+        """Raise `SetupError` where there is no snapshot of `day`."""
         if not days_of_both([day], self.days):
             raise SetupError(
                 f"{self.directory} has no snapshot of day {day:g}; its days are {days_in_words(self.days)}"
             )
-        return self._read(int(np.argmin(np.abs(self.days - day))))
 
     def last_snapshot(self) -> Snapshot:
         """The last snapshot in the history file."""
@@ -69,17 +76,41 @@ def read_run(directory: Path) -> Run:
     """Open a run directory; raise `SetupError` where it holds no run, `MeshError` where its mesh is not valid."""
     try:
         record = json.loads((directory / RECORD_FILE).read_text())
+        if not isinstance(record, dict):
+            raise TypeError(f"{RECORD_FILE} is not the record of a run")
         series = read_series(directory / DIAGNOSTICS_FILE)
         with netCDF4.Dataset(directory / HISTORY_FILE) as file:
             days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
         mesh = read_mesh(directory / MESH_FILE)
-        parameters = dict(record["parameters"].items())
-        sampling = record["configuration"]["sampling"]
-        run = Run(directory, mesh, str(record["case"]), parameters, sampling, days, series)
-        run.last_snapshot()
+        configuration = record["configuration"]
+        run = Run(
+            directory,
+            mesh,
+            case=str(record["case"]),
+            parameters=dict(record["parameters"].items()),
+            sampling=configuration["sampling"],
+            time_step=float(configuration["time_step"]),
+            steps=int(record["steps"]),
+            days=days,
+            series=series,
+        )
+        _require_sizes(run.last_snapshot(), run)
         return run
-    except (OSError, json.JSONDecodeError, AttributeError, IndexError, KeyError, TypeError) as error:
+    except (MeshError, SetupError):
+        raise
+    except (OSError, RuntimeError, ValueError, AttributeError, IndexError, KeyError, TypeError) as error:
         raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+
+
+def _require_sizes(snapshot: Snapshot, run: Run) -> None:
+    """Raise `SetupError` where the fields of `snapshot` are not on the mesh of `run`."""
+    places = {"nCells": run.mesh.n_cells, "nEdges": run.mesh.n_edges, "nVertices": run.mesh.n_vertices}
+    for name, (place, *_) in FIELDS.items():
+        if snapshot.fields[name].shape != (places[place],):
+            raise SetupError(
+                f"{run.directory / HISTORY_FILE} has {snapshot.fields[name].size} values of {name}, but "
+                f"{MESH_FILE} beside it needs {places[place]}; put the files of one run together"
+            )
 
 
 def days_in_words(days: Iterable[float]) -> str:

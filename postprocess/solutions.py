@@ -8,13 +8,12 @@ from pathlib import Path
 from types import ModuleType
 from typing import Protocol
 
-import numpy as np
-
 from cases.base import Case
 from cases.registry import find_case
 from mesh.arrays import Array
 from postprocess.remap import Remap, remap_cells, remap_vertices
 from postprocess.runs import Run, days_in_words, days_of_both, read_run
+from postprocess.stored_references import stored_path
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
 
@@ -64,21 +63,15 @@ class ExactSolution:
 
     def thickness(self, longitude: Array, latitude: Array, day: float) -> Array:
         """Thickness of the fluid, m."""
-        return _filled(self.case.thickness(longitude, latitude, day * SECONDS_PER_DAY), longitude)
+        return self.case.evaluated(self.case.thickness, day * SECONDS_PER_DAY)(longitude, latitude)
 
     def velocity(self, longitude: Array, latitude: Array, day: float) -> tuple[Array, Array]:
         """Zonal and meridional velocity, m/s."""
-        zonal, meridional = self.case.velocity(longitude, latitude, day * SECONDS_PER_DAY)
-        return _filled(zonal, longitude), _filled(meridional, longitude)
+        return self.case.evaluated_velocity(day * SECONDS_PER_DAY)(longitude, latitude)
 
     def vorticity(self, longitude: Array, latitude: Array, day: float) -> Array:
         """Relative vorticity, 1/s."""
-        return _filled(self.case.vorticity(longitude, latitude, day * SECONDS_PER_DAY), longitude)
-
-
-def _filled(values: Array | float, like: Array) -> Array:
-    """An array like `like`: cases may give one number for all points."""
-    return np.array(np.broadcast_to(values, like.shape), dtype=np.float64)
+        return self.case.evaluated(self.case.vorticity, day * SECONDS_PER_DAY)(longitude, latitude)
 
 
 class RunSolution:
@@ -133,22 +126,22 @@ def _short(directory: Path) -> str:
 
 
 def case_of(run: Run) -> Case | None:
-    """The case of a run with its parameters; None where it is not one of this package."""
+    """The case of a run with its parameters; None where it is unknown, or its file was moved or changed."""
     try:
         return find_case(run.case, run.parameters)
     except SetupError:
         return None
 
 
-def choose_solution(wanted: str, runs: Sequence[Run], days: Sequence[float]) -> Solution:
+def choose_solution(wanted: str, runs: Sequence[Run], days: Sequence[float], every: bool = False) -> Solution:
     """What to compare `runs`, which are of one case, with.
 
     `wanted` is "exact", the path of a reference file or of a run directory, or "auto": the exact solution if the case
-    has one, else the reference that comes with the package if it is of the case and of one of `days`, else the first
-    run. Raises `SetupError` where there is no such solution or it is one of something else.
+    has one, else the reference that comes with the package if it is of the case and of one of `days`, or of `every`
+    one, else the first run. Raises `SetupError` where there is no such solution or it is one of something else.
     """
     if wanted == "auto":
-        return _best_solution(runs, days)
+        return _best_solution(runs, days, every)
     if wanted == "exact":
         return _exact_solution(runs[0])
     path = Path(wanted)
@@ -182,12 +175,12 @@ def _same(a: object, b: object) -> bool:
     return a == b
 
 
-def _best_solution(runs: Sequence[Run], days: Sequence[float]) -> Solution:
+def _best_solution(runs: Sequence[Run], days: Sequence[float], every: bool) -> Solution:
     case = case_of(runs[0])
     if case is not None and case.has_exact_solution:
         return ExactSolution(case)
     try:
-        stored = _stored_reference(runs[0], days)
+        stored = _stored_reference(runs[0], days, every)
     except SetupError as error:
         if len(runs) == 1:
             raise
@@ -210,10 +203,16 @@ def _exact_solution(run: Run) -> Solution:
     return ExactSolution(case)
 
 
-def _stored_reference(run: Run, days: Sequence[float]) -> Solution | None:
-    """The reference that comes with the package for the case and parameters of `run` and one of `days`, or None."""
-    reference = _reference_files().stored_reference(run.case)
-    if reference is None or not days_of_both(reference.days, days):
+def _stored_reference(run: Run, days: Sequence[float], every: bool) -> Solution | None:
+    """The reference that comes with the package for the case and parameters of `run`, or None.
+
+    It must know one of `days`, or `every` one of them.
+    """
+    if stored_path(run.case) is None:
+        return None
+    reference: Solution = _reference_files().stored_reference(run.case)
+    known = days_of_both(days, reference.days or ())
+    if not known or (every and len(known) < len(days)):
         return None
     try:
         require_same_problem(run.directory, reference.case.name, reference.case.parameters(), run)

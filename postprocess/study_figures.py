@@ -1,17 +1,15 @@
-"""Figures of a study of meshes: errors against resolution and quality, truncation errors, maps, conservation."""
+"""Charts of a study of meshes: errors against resolution and quality, truncation errors, conservation."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from postprocess.mesh_study import CONSERVATION, Member, thickness_error
-from postprocess.plots import CENTRAL_LONGITUDE, ROUND_OFF_FLOOR, draw_mollweide
-from postprocess.projections import mollweide
-from postprocess.study_folder import Row
+from postprocess.mesh_study import Member
+from postprocess.plots import ROUND_OFF_FLOOR
+from postprocess.study_folder import CONSERVATION, Row
 from swe.constants import SECONDS_PER_DAY
 
 ERRORS = {
@@ -21,6 +19,13 @@ ERRORS = {
     "vorticity_l2": "vorticity, l2",
 }
 """Errors that are drawn, and their titles."""
+
+UNCERTAINTIES = {
+    "thickness_l2": "uncertainty_thickness",
+    "normal_velocity_l2": "uncertainty_velocity",
+    "vorticity_l2": "uncertainty_vorticity",
+}
+"""Uncertainty of the reference that goes with an error."""
 
 QUALITIES = {
     "sigma_avg": "σ avg: shortest / longest distance",
@@ -34,14 +39,8 @@ QUALITIES = {
 
 OPERATORS = ("gradient", "divergence", "curl", "perp", "kinetic_energy")
 MARKERS = "osD^vP*X"
-IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
-"""Colours of the dots on cells with so many sides."""
-
 SHORT_AXIS = 30.0
 """Logarithmic axes over a smaller ratio than this have labels at 1, 2 and 5 times powers of ten."""
-
-MOST_DOTS = 400
-"""Dots are left out where irregular cells are more than this: they would hide the map."""
 
 
 def error_figure(rows: Sequence[Row], heading: str) -> Figure:
@@ -50,9 +49,9 @@ def error_figure(rows: Sequence[Row], heading: str) -> Figure:
     figure, grid = _panels(len(names), 2)
     for axes, name in zip(grid, names, strict=True):
         _draw_families(axes, rows, name)
-        uncertainty = rows[0].get(f"uncertainty_{name.split('_')[0]}") if name.endswith("l2") else None
-        if uncertainty:
-            axes.axhline(uncertainty, color="grey", linestyle=":", label="uncertainty of the reference")
+        uncertainties = [row[UNCERTAINTIES[name]] for row in rows if UNCERTAINTIES.get(name) in row]
+        if uncertainties and uncertainties[0] > 0.0:
+            axes.axhline(uncertainties[0], color="grey", linestyle=":", label="uncertainty of the reference")
         axes.set_title(f"relative error of {ERRORS[name]}", fontsize=10)
     _finish(figure, grid, heading)
     return figure
@@ -84,38 +83,13 @@ def quality_figure(rows: Sequence[Row], heading: str) -> Figure:
                 label=family,
                 alpha=0.8,
             )
-        axes.set_yscale("log")
+        _logarithmic_ordinate(axes)
         if name not in ("sigma_avg", "q_min"):
             _logarithmic_abscissa(axes, [row[name] for row in rows])
         axes.set_xlabel(label, fontsize=9)
         axes.set_ylabel("relative l2 error of thickness", fontsize=9)
         axes.grid(alpha=0.3, which="both")
     _legend_below(figure, grid[0])
-    figure.suptitle(heading)
-    return figure
-
-
-def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
-    """Where the error of thickness lives: one map for each mesh, cell by cell, on one colour scale.
-
-    Dots mark pentagons (black) and heptagons (magenta), unless there are too many.
-    """
-    finished = [member for member in members if member.comparison is not None]
-    columns = min(2, len(finished))
-    rows = -(-len(finished) // columns)
-    figure = Figure(figsize=(6.4 * columns, 3.4 * rows + 0.9), layout="constrained")
-    grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-    errors = [thickness_error(member, day) for member in finished]
-    norm = CenteredNorm(halfrange=float(np.median([np.abs(error).max() for error in errors])))
-    for axes, member, error in zip(grid, finished, errors, strict=False):
-        drawn = draw_mollweide(axes, member.mesh, error, {"cmap": "RdBu_r", "norm": norm})
-        _mark_irregular_cells(axes, member)
-        axes.set_title(f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error).max():.2g} m", fontsize=9)
-    for axes in grid[len(finished) :]:
-        axes.axis("off")
-    figure.colorbar(
-        drawn, ax=list(grid), location="bottom", shrink=0.6, aspect=40, extend="both", label="error of thickness (m)"
-    )
     figure.suptitle(heading)
     return figure
 
@@ -167,7 +141,7 @@ def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
             markersize=5,
         )
     _slope_guides(axes, rows, name)
-    axes.set_yscale("log")
+    _logarithmic_ordinate(axes)
     _logarithmic_abscissa(axes, [row["spacing_km"] for row in rows])
     axes.set_xlabel("mean distance between cells (km)", fontsize=9)
     axes.grid(alpha=0.3, which="both")
@@ -185,11 +159,19 @@ def _slope_guides(axes: Axes, rows: Sequence[Row], name: str) -> None:
 
 def _logarithmic_abscissa(axes: Axes, values: Sequence[float]) -> None:
     """Make the horizontal axis logarithmic, with labels neither missing nor overlapping over about a decade."""
+    if not min(values) > 0.0:
+        return
     axes.set_xscale("log")
     if max(values) < SHORT_AXIS * min(values):
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
         axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axes.xaxis.set_minor_formatter(NullFormatter())
+
+
+def _logarithmic_ordinate(axes: Axes) -> None:
+    """Make the vertical axis logarithmic, unless all errors are zero."""
+    if axes.dataLim.y1 > 0.0:
+        axes.set_yscale("log")
 
 
 def _finish(figure: Figure, grid: Sequence[Axes], heading: str) -> None:
@@ -200,14 +182,3 @@ def _finish(figure: Figure, grid: Sequence[Axes], heading: str) -> None:
 def _legend_below(figure: Figure, axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
-
-
-def _mark_irregular_cells(axes: Axes, member: Member) -> None:
-    sides = member.mesh.n_edges_on_cell
-    if np.count_nonzero(sides != 6) > MOST_DOTS:
-        return
-    for count, colour in IRREGULAR_COLOURS.items():
-        cells = np.flatnonzero(sides == count)
-        longitude = (member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE + np.pi) % (2.0 * np.pi) - np.pi
-        x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
-        axes.plot(x, y, ".", color=colour, markersize=3)

@@ -10,15 +10,24 @@ from typing import Any
 import numpy as np
 
 from cases.base import Case
+from mesh.errors import MeshError
+from mesh.files import written_aside
 from mesh.io import mesh_hash
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs import Run, read_run
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import RunError
+from swe.errors import RunError, SetupError
 from swe.output import RECORD_FILE
 from swe.simulation import Simulation
 
 TABLE_FILE = "study.csv"
+CONSERVATION = (
+    "mass_change",
+    "absolute_vorticity_change",
+    "total_energy_change_of_total",
+    "potential_enstrophy_change",
+)
+"""Series of diagnostics that are in the tables."""
 
 Tell = Callable[[str], None]
 """Hears a line on what has been done."""
@@ -40,7 +49,7 @@ class Task:
 
     def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
         """The run, made unless it is there already; where it fails there is none, but the reason."""
-        if not self._is_finished():
+        if not self.is_finished():
             tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
             simulation = Simulation(
                 self.mesh,
@@ -57,8 +66,18 @@ class Task:
                 return None, str(error)
         return read_run(self.directory), ""
 
-    def _is_finished(self) -> bool:
-        """Whether the directory holds just this run, on this very mesh and run to the end."""
+    def is_finished(self) -> bool:
+        """Whether the directory holds just this run, on this very mesh, run to the end and readable."""
+        return self._is_recorded() and self._is_readable()
+
+    def _is_readable(self) -> bool:
+        try:
+            read_run(self.directory)
+        except (SetupError, MeshError):
+            return False
+        return True
+
+    def _is_recorded(self) -> bool:
         try:
             record = json.loads((self.directory / RECORD_FILE).read_text())
             configuration = record["configuration"]
@@ -72,23 +91,23 @@ class Task:
                 and self.time_step in (None, configuration["time_step"])
                 and record["mesh_hash"] == mesh_hash(self.mesh.scaled(self.case.radius))
             )
-        except (FileNotFoundError, json.JSONDecodeError, KeyError):
+        except (OSError, ValueError, KeyError, TypeError):
             return False
 
 
 def write_table(rows: Sequence[Row], path: Path) -> None:
     """Write rows as CSV; a column is empty where a row lacks it."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
-    with path.open("w", newline="") as file:
+    with written_aside(path) as aside, aside.open("w", newline="") as file:
         writer = csv.DictWriter(file, columns)
         writer.writeheader()
         writer.writerows(rows)
 
 
 def fitted_order(size: Sequence[float], error: Sequence[float]) -> float:
-    """Slope of the least-squares line through log(error) over log(size); NaN for fewer than two points."""
+    """Slope of the least-squares line through log(error) over log(size); NaN for fewer than two different sizes."""
     x, y = np.array(size, dtype=float), np.array(error, dtype=float)
     usable = y > 0.0
-    if np.count_nonzero(usable) < 2:
+    if len(np.unique(x[usable])) < 2:
         return float("nan")
     return float(np.polyfit(np.log(x[usable]), np.log(y[usable]), 1)[0])

@@ -8,24 +8,29 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from PIL import Image
 
+from mesh.files import written_aside
 from mesh.quality import Quality
-from postprocess.mesh_study import CONSERVATION, Member, Plan
-from postprocess.plots import DOTS_PER_INCH
+from postprocess.mesh_study import Member, Plan
 from postprocess.study_figures import (
     ERRORS,
     OPERATORS,
     conservation_figure,
     error_figure,
-    map_figure,
     quality_figure,
     truncation_figure,
 )
-from postprocess.study_folder import Row, fitted_order
+from postprocess.study_folder import CONSERVATION, Row, fitted_order
+from postprocess.study_maps import closeup_figure, map_figure, place_in_words
 from postprocess.time_study import DRAWN, TimePlan, orders, time_figure
 
 REPORT_FILE = "report.html"
 FIGURES_FOLDER = "figures"
+REPORT_DOTS_PER_INCH = 100
+
+STALLING = 1.0
+"""The largest error stalls where its order is less than that of the l2 norm by this much."""
 
 STYLE = """
 body { font-family: sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; color: #222; }
@@ -78,10 +83,9 @@ TIME_COLUMNS = {
 }
 
 
-def write_mesh_report(plan: Plan, members: Sequence[Member], rows: Sequence[Row], arguments: Sequence[str]) -> Path:
+def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Row], arguments: Sequence[str]) -> Path:
     """Draw all figures of a study of meshes and write its report; return the path of the report."""
     heading = f"{plan.case.title}, day {plan.error_day:g}"
-    finest = [member for member in members if member.requested_cells == max(plan.cells)]
     compared = [row for row in rows if "thickness_l2" in row]
     figures = {"truncation": truncation_figure(rows, "Truncation errors of the operators")}
     if compared:
@@ -91,6 +95,7 @@ def write_mesh_report(plan: Plan, members: Sequence[Member], rows: Sequence[Row]
         }
     if any(member.comparison is not None for member in finest):
         figures["maps"] = map_figure(finest, plan.error_day, f"Where the error lives: {heading}")
+        figures["closeups"] = closeup_figure(finest, plan.error_day, f"Round the worst cell: {heading}")
     if any(member.run is not None for member in finest):
         figures["conservation"] = conservation_figure(finest, f"Conservation: {plan.case.title}")
     sections = {
@@ -105,6 +110,7 @@ def write_mesh_report(plan: Plan, members: Sequence[Member], rows: Sequence[Row]
         f"{plan.case.title} ({plan.case.reference}), run to day {plan.days:g}; errors on day {plan.error_day:g} "
         f"against: {reference}. Norms are those of Williamson et al. (1992)."
     )
+    text = " ".join([text, *_stalling(compared)])
     return _write_page(plan.folder, f"Study of meshes: {plan.case.title}", text, arguments, sections, figures)
 
 
@@ -131,6 +137,24 @@ def _order_rows(rows: Sequence[Row]) -> list[Row]:
             orders_of = {name: fitted_order(spacing, [float(row.get(name, 0.0)) for row in ours]) for name in ERRORS}
             fitted.append({"family": family, **orders_of})
     return fitted
+
+
+def _stalling(rows: Sequence[Row]) -> list[str]:
+    """A sentence for each family whose largest error of thickness no longer falls with its l2 norm."""
+    sentences = []
+    for family in dict.fromkeys(row["family"] for row in rows):
+        last = [row for row in rows if row["family"] == family][-2:]
+        spacing = [row["spacing_km"] for row in last]
+        l2, linf = (fitted_order(spacing, [row[f"thickness_{norm}"] for row in last]) for norm in ("l2", "linf"))
+        if l2 - linf > STALLING:
+            worst = last[-1]
+            sentences.append(
+                f"On {family}, l∞ of thickness stalls between {last[0]['cells']} and {worst['cells']} cells at "
+                f"{worst['thickness_linf']:.2g} (order {linf:.2f}, of l2 {l2:.2f}): the worst cell, at "
+                f"{place_in_words(worst['worst_longitude'], worst['worst_latitude'])}, is "
+                f"{worst['worst_to_irregular']:.1f} mean distances from the nearest cell that is no hexagon."
+            )
+    return sentences
 
 
 def _table(rows: Sequence[Row], columns: Columns) -> str:
@@ -162,16 +186,20 @@ def _write_page(
     parts += [f"<h2>{html.escape(name)}</h2>\n{table}" for name, table in sections.items()]
     for name, figure in figures.items():
         image = _png(figure)
-        (folder / FIGURES_FOLDER / f"{name}.png").write_bytes(image)
+        with written_aside(folder / FIGURES_FOLDER / f"{name}.png") as aside:
+            aside.write_bytes(image)
         source = f"data:image/png;base64,{base64.b64encode(image).decode()}"
         parts.append(f'<p><img src="{source}" alt="{html.escape(name)}"></p>')
     path = folder / REPORT_FILE
     start = f'<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>'
-    path.write_text(f"{start}\n<style>{STYLE}</style>\n" + "\n".join(parts) + "\n</html>\n", encoding="utf-8")
+    with written_aside(path) as aside:
+        aside.write_text(f"{start}\n<style>{STYLE}</style>\n" + "\n".join(parts) + "\n</html>\n", encoding="utf-8")
     return path
 
 
 def _png(figure: Figure) -> bytes:
-    stream = io.BytesIO()
-    figure.savefig(stream, dpi=DOTS_PER_INCH, format="png")
-    return stream.getvalue()
+    """The figure as PNG with a palette, a third of the size of one in true colour."""
+    full, small = io.BytesIO(), io.BytesIO()
+    figure.savefig(full, dpi=REPORT_DOTS_PER_INCH, format="png")
+    Image.open(full).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE).save(small, format="PNG", optimize=True)
+    return small.getvalue()

@@ -1,6 +1,5 @@
 """The same run with several time steps: drift of the invariants and error of the time stepping against its length."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,18 +10,12 @@ from matplotlib.figure import Figure
 from cases.base import Case
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.compare import fields_of
+from postprocess.folders import prepared_folder
 from postprocess.norms import scalar_norms, vector_norms
 from postprocess.runs import Run
-from postprocess.study_folder import TABLE_FILE, Row, Task, Tell, fitted_order, write_table
+from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, fitted_order, write_table
 from swe.errors import SetupError
-from swe.output import RECORD_FILE
 
-CONSERVATION = (
-    "mass_change",
-    "absolute_vorticity_change",
-    "total_energy_change_of_total",
-    "potential_enstrophy_change",
-)
 ORDER_OF_ENERGY_DRIFT = 5
 """Classical RK4 dissipates the energy of oscillations at this order in the time step."""
 
@@ -50,11 +43,11 @@ class TimePlan:
 
 def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[Row]:
     """Make the runs that are missing, the shortest step first, and write the table; return its rows."""
-    plan.folder.mkdir(parents=True, exist_ok=True)
+    prepared_folder(plan.folder)
     rows: list[Row] = []
     finest: Run | None = None
     for time_step in sorted(set(plan.time_steps)):
-        directory = plan.folder / "runs" / f"dt-{time_step:g}"
+        directory = plan.folder / "runs" / f"dt-{time_step!r}"
         task = Task(directory, plan.case, plan.mesh, plan.days, plan.days, time_step)
         run, failure = task.carry_out(progress, tell)
         finest = run if finest is None else finest
@@ -67,8 +60,7 @@ def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[Row]:
 
 def _measured(run: Run, finest: Run, day: float) -> Row:
     """Conservation at the end, and the difference from the run of the shortest step, which is none for itself."""
-    record = json.loads((run.directory / RECORD_FILE).read_text())
-    row: Row = {"steps": record["steps"], "courant_number": float(run.series["courant_number"].max())}
+    row: Row = {"steps": run.steps, "courant_number": float(run.series["courant_number"].max())}
     row |= {name: float(run.series[name][-1]) for name in CONSERVATION}
     if run is finest:
         return row

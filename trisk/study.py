@@ -50,8 +50,8 @@ def mesh(
         tuple(cells or (642, 2562, 10242)),
     )
     tell = _teller(quiet)
-    members, rows = carry_out(plan, not quiet, tell)
-    tell(str(write_mesh_report(plan, members, rows, ["trisk", *sys.argv[1:]])))
+    finest, rows = carry_out(plan, not quiet, tell)
+    tell(str(write_mesh_report(plan, finest, rows, ["trisk", *sys.argv[1:]])))
 
 
 @app.command()

@@ -9,7 +9,8 @@ pytest.importorskip("ducc0")
 from cases import find_case
 from cases.williamson import Williamson2
 from postprocess.reference import MEASURES, REFERENCE_DAYS, Reference, make_reference
-from postprocess.reference_file import FOLDER, ROUNDING, read_reference, stored_reference, write_reference
+from postprocess.reference_file import ROUNDING, read_reference, stored_reference, write_reference
+from postprocess.stored_references import FOLDER
 from swe.errors import SetupError
 
 LONGITUDE, LATITUDE = np.array([0.1, 2.0, 4.7, 6.0]), np.array([-1.2, 0.4, 0.52, 1.5])
@@ -111,3 +112,21 @@ def test_a_stored_reference_starts_from_the_case(reference: Reference) -> None:
     stored = stored_reference("williamson5")
     assert stored is not None
     assert stored.coefficients[:, 2, 0] == pytest.approx(reference.coefficients[0, 2, 0], rel=1e-6)
+
+
+def test_a_reference_without_uncertainty_is_stored_as_well_as_integers_allow(tmp_path: Path) -> None:
+    """Of a steady flow the truncations agree to round-off: the step must not follow them down."""
+    case = Williamson2()
+    steady = make_reference(case, (0.25,), 16, np.inf, "", lambda what, part: None)
+    write_reference(steady, tmp_path / "steady.nc")
+    read = read_reference(tmp_path / "steady.nc")
+    assert read.thickness(LONGITUDE, LATITUDE, 0.25) == pytest.approx(case.thickness(LONGITUDE, LATITUDE), rel=1e-8)
+    assert read.vorticity(LONGITUDE, LATITUDE, 0.25) == pytest.approx(case.vorticity(LONGITUDE, LATITUDE), abs=1e-12)
+
+
+def test_points_may_have_any_shape(reference: Reference) -> None:
+    """As means over cells ask for them."""
+    square = LONGITUDE.reshape(2, 2), LATITUDE.reshape(2, 2)
+    flat = reference.thickness(LONGITUDE, LATITUDE, 0.5)
+    assert np.array_equal(reference.thickness(*square, 0.5), flat.reshape(2, 2))
+    assert reference.velocity(*square, 0.5)[1].shape == (2, 2)

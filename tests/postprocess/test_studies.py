@@ -9,7 +9,7 @@ from matplotlib.image import imread
 
 from cases import find_case
 from cases.williamson import Williamson2
-from mesh import VoronoiMesh, mesh_quality, scvt_mesh
+from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
 from postprocess import mesh_study, time_study
 from postprocess.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.mesh_study import Plan
@@ -43,7 +43,7 @@ def test_families_are_what_they_are_called(family: str) -> None:
         assert quality.residual > max(STOPPED_RESIDUALS)
     elif family.startswith("stopped"):
         residual = float(family.removeprefix("stopped-"))
-        assert 1e-6 < quality.residual < residual
+        assert 0.7 * residual < quality.residual < residual
     elif family != "nested":  # whose fixed generators are no centroids
         assert quality.residual < 1e-6
     wide = mesh.area_cell.max() > 4.0 * mesh.area_cell.min()
@@ -71,7 +71,7 @@ def test_table_holds_quality_errors_and_conservation(plan: Plan, study: tuple) -
 
 
 def test_worst_cell_is_where_the_error_is_largest(study: tuple) -> None:
-    member, row = study[0][2], study[1][2]
+    member, row = study[0][0], study[1][2]
     error = mesh_study.thickness_error(member, 0.5)
     depth = member.comparison.solution.thickness(member.mesh.lon_cell, member.mesh.lat_cell, 0.5)
     worst = int(np.argmax(np.abs(error)))
@@ -87,27 +87,27 @@ def test_a_finished_study_is_not_run_again(plan: Plan, study: tuple) -> None:
     assert lines == []
     assert rows == study[1]
     assert os.stat(directory / "history.nc").st_mtime_ns == before
-    task = Task(directory, plan.case, members[3].mesh, plan.days, plan.error_day)
-    assert task._is_finished()
+    task = Task(directory, plan.case, members[1].mesh, plan.days, plan.error_day)
+    assert task.is_finished()
     for change in (
         {"days": 2.0},
         {"snapshot_days": 1.0},
         {"time_step": 1.0},
         {"case": Williamson2(angle=0.1)},
-        {"mesh": members[2].mesh},
+        {"mesh": members[0].mesh},
         {"directory": plan.folder},
     ):
-        assert not dataclasses.replace(task, **change)._is_finished(), change
+        assert not dataclasses.replace(task, **change).is_finished(), change
 
 
 def test_report_holds_everything(plan: Plan, study: tuple) -> None:
     page = write_mesh_report(plan, *study, ["trisk", "study", "mesh"]).read_text()
-    assert page.count('<img src="data:image/png;base64,') == 5
+    assert page.count('<img src="data:image/png;base64,') == 6
     assert 'src="http' not in page
     for words in ("Fitted orders", "Truncation errors", "trisk study mesh", "exact solution", "bisection"):
         assert words in page
     pictures = list((plan.folder / "figures").glob("*.png"))
-    assert len(pictures) == 5
+    assert len(pictures) == 6
     for path in pictures:
         assert imread(path).std() > 0.05, f"{path} is blank"
 
@@ -123,6 +123,29 @@ def test_a_run_that_fails_is_a_line_of_the_table(plan: Plan, tmp_path: Path, mon
     assert members[0].run is None
     page = write_mesh_report(small, members, rows, ["trisk"]).read_text()
     assert page.count("<img") == 1
+
+
+def test_fluid_at_rest_has_no_errors_to_draw(tmp_path: Path) -> None:
+    plan = Plan(tmp_path, find_case("lake-at-rest"), 0.25, 0.25, ("scvt",), (162, 642))
+    members, rows = mesh_study.carry_out(plan, False, silent)
+    assert rows[1]["thickness_linf"] < 1e-15
+    assert write_mesh_report(plan, members, rows, ["trisk"]).read_text().count("<img") == 6
+
+
+def test_a_mesh_made_otherwise_and_a_damaged_run_are_made_again(plan: Plan, tmp_path: Path) -> None:
+    small = dataclasses.replace(plan, folder=tmp_path, families=("scvt",), cells=(162, 162))
+    _, rows = mesh_study.carry_out(small, False, silent)
+    assert len(rows) == 1
+    directory, lines = tmp_path / "runs" / "scvt-162", []
+    (directory / "history.nc").write_bytes(b"damaged")
+    mesh_study.carry_out(small, False, lines.append)
+    assert len(lines) == 1
+    for record in ("[]", "no JSON", ""):
+        (directory / "run.json").write_text(record)
+        task = Task(directory, plan.case, scvt_mesh(162), plan.days, plan.error_day)
+        assert not task.is_finished()
+    write_mesh(scvt_mesh(42), tmp_path / "meshes" / "scvt-162.nc", "some other mesh")
+    assert mesh_study.carry_out(small, False, silent)[1][0]["cells"] == 162
 
 
 def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) -> None:
@@ -141,6 +164,7 @@ def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) ->
     [
         ({"families": ("hexagons",)}, "no family of meshes named 'hexagons'; choose among bisection"),
         ({"cells": (1000,)}, "1000 cells are no bisected icosahedron"),
+        ({"cells": (42,)}, "42 cells are no bisected icosahedron of a fit size"),
         ({"error_day": 2.0}, "day 2, which is not within the 1 days"),
         ({"error_day": 0.0}, "day 0, which is not within"),
     ],

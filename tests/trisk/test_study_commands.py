@@ -9,7 +9,7 @@ from mesh import scvt_mesh
 from swe import Simulation
 from tests.trisk.conftest import Call
 
-STUDY = ("--family", "scvt", "--cells", 42, "--cells", 162, "--days", 0.25)
+STUDY = ("--family", "scvt", "--cells", 162, "--cells", 642, "--days", 0.25)
 
 
 def test_study_of_meshes_goes_on_where_it_was(trisk: Call, tmp_path: Path) -> None:
