@@ -5,7 +5,7 @@ import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -135,21 +135,47 @@ class Case(ABC):
         """`function` of this case as one of longitude and latitude; raises `SetupError` where it fails."""
 
         def field(longitude: Array, latitude: Array) -> Array:
-            try:
-                values = np.asarray(function(longitude, latitude, *time), dtype=np.float64)
-            except SetupError:
-                raise
-            except Exception as error:
-                place = _place_of_call(error)
-                raise SetupError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
-            if values.shape not in ((), longitude.shape):
-                raise SetupError(
-                    f"{function.__name__} of {self.name} gives an array of shape {values.shape} for positions of "
-                    f"shape {longitude.shape}; it must give one value for each position, or one number"
-                )
-            return np.array(np.broadcast_to(values, longitude.shape))
+            return self._spread(function, self._outcome(function, longitude, latitude, *time), longitude)
 
         return field
+
+    def evaluated_velocity(self, time: float = 0.0) -> Callable[[Array, Array], tuple[Array, Array]]:
+        """`velocity` at `time` as a function of longitude and latitude; raises `SetupError` where it fails."""
+
+        def field(longitude: Array, latitude: Array) -> tuple[Array, Array]:
+            outcome = self._outcome(self.velocity, longitude, latitude, time)
+            if not isinstance(outcome, tuple | list | np.ndarray) or len(outcome) != 2:
+                raise SetupError(
+                    f"velocity of {self.name} gives {type(outcome).__name__}; it must give an eastward and a "
+                    "northward velocity"
+                )
+            eastward, northward = (self._spread(self.velocity, part, longitude) for part in outcome)
+            return eastward, northward
+
+        return field
+
+    def _outcome(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        """What `function` of this case gives."""
+        try:
+            return function(*arguments)
+        except SetupError:
+            raise
+        except Exception as error:
+            place = _place_of_call(error)
+            raise SetupError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
+
+    def _spread(self, function: Callable[..., Any], outcome: object, longitude: Array) -> Array:
+        """`outcome` of `function`, one number or one for each position, as an array of one for each."""
+        try:
+            values = np.asarray(outcome, dtype=np.float64)
+        except (TypeError, ValueError) as error:
+            raise SetupError(f"{function.__name__} of {self.name} gives no numbers: {error!r}") from error
+        if values.shape not in ((), longitude.shape):
+            raise SetupError(
+                f"{function.__name__} of {self.name} gives an array of shape {values.shape} for positions of "
+                f"shape {longitude.shape}; it must give one value for each position, or one number"
+            )
+        return np.array(np.broadcast_to(values, longitude.shape))
 
 
 def _place_of_call(error: Exception) -> str:

@@ -3,8 +3,10 @@
 import copy
 import importlib.util
 import inspect
+import math
 import sys
 import traceback
+from numbers import Real
 from pathlib import Path
 from types import ModuleType
 from typing import Any, cast
@@ -31,8 +33,8 @@ def load_case(address: str) -> Case:
         raise SetupError(f"{address} is a file; name the class in it as well: {address}:MyCase")
     path = Path(file).absolute()
     found = _attribute(_imported(path), attribute, path)
-    case = _made(found, address) if isinstance(found, type) else found
-    _require_members(case, address)
+    case = _made(found, address, path) if isinstance(found, type) else found
+    _require_members(case, address, path)
     return cast(Case, _named(case, f"{path}:{attribute}"))
 
 
@@ -62,12 +64,12 @@ def _imported(path: Path) -> ModuleType:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise SetupError(f"{path} cannot be imported{_line(error, path)}: {error!r}") from error
+        raise SetupError(f"{path} cannot be imported{line_in(path, error)}: {error!r}") from error
     return module
 
 
-def _line(error: BaseException, path: Path) -> str:
-    """The line of the file where importing it failed, as a part of a sentence."""
+def line_in(path: str | Path, error: BaseException) -> str:
+    """The line of the file at `path` that came to `error`, as a part of a sentence; empty where none did."""
     if isinstance(error, SyntaxError):
         return f", line {error.lineno}" if error.lineno else ""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
@@ -86,7 +88,7 @@ def _is_own_case(value: object, module: ModuleType) -> bool:
     return isinstance(value, type) and issubclass(value, Case) and value.__module__ == module.__name__
 
 
-def _made(kind: type, address: str) -> object:
+def _made(kind: type, address: str, path: Path) -> object:
     """An object of the class, with default parameters."""
     if not issubclass(kind, Case):
         raise SetupError(f"{address} is no case; derive the class from cases.Case")
@@ -94,13 +96,31 @@ def _made(kind: type, address: str) -> object:
         raise SetupError(f"{address} lacks {' and '.join(sorted(kind.__abstractmethods__))}; write them")
     try:
         return kind()
-    except TypeError as error:
-        raise SetupError(f"{address} cannot be made ({error}); give every parameter a default") from error
+    except SetupError:
+        raise
+    except Exception as error:
+        line = line_in(path, error)
+        if isinstance(error, TypeError) and not line:
+            raise SetupError(f"{address} cannot be made ({error}); give every parameter a default") from error
+        raise SetupError(f"{address} cannot be made with its own parameters{line}: {error!r}") from error
 
 
-def _require_members(case: object, address: str) -> None:
-    """Raise `SetupError` where something that every case has, besides its name, is missing."""
+def _require_members(case: object, address: str, path: Path) -> None:
+    """Raise `SetupError` where something that every case has, besides its name, is missing or no use."""
     members = {*Case.__annotations__, *vars(Case)} - {"name"}
-    missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
+    try:
+        missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
+    except Exception as error:
+        raise SetupError(f"a property of {address} fails{line_in(path, error)}: {error!r}") from error
     if missing:
         raise SetupError(f"{address} lacks {', '.join(missing)}; derive the class from cases.Case and add them")
+    known = cast(Case, case)
+    if not (_is_finite(known.recommended_days) and known.recommended_days > 0.0):
+        raise SetupError(f"recommended_days of {address} is {known.recommended_days!r}; give a number above 0")
+    if not (known.convergence_order is None or _is_finite(known.convergence_order)):
+        raise SetupError(f"convergence_order of {address} is {known.convergence_order!r}; give a number or None")
+
+
+def _is_finite(value: object) -> bool:
+    """Whether `value` is a finite number."""
+    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)

@@ -10,6 +10,7 @@ from dataclasses import is_dataclass, replace
 from typing import Any, get_type_hints
 
 from cases.base import Case
+from cases.case_file import line_in
 from swe.errors import SetupError
 
 Value = float | bool | str
@@ -52,7 +53,14 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
         return case
     if not is_dataclass(case):
         raise SetupError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
-    return replace(case, **changed)
+    try:
+        return replace(case, **changed)
+    except SetupError:
+        raise
+    except Exception as error:
+        settings = ", ".join(f"{name} = {value!r}" for name, value in changed.items())
+        file = case.name.rpartition(":")[0]  # for the name of a case of a user is FILE.py:CLASS
+        raise SetupError(f"{case.name} cannot be made with {settings}{line_in(file, error)}: {error!r}") from error
 
 
 def _converted(case: Case, name: str, value: Value, kind: object) -> Value:

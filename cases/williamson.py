@@ -220,7 +220,7 @@ class Williamson6(Case):
     """Amplitude K of the wave, 1/s."""
 
     polar_depth: float = 8000.0
-    """Depth h0 at the poles, m."""
+    """Constant part h0 of the depth, m; the depth at the poles where the wave number is above 1."""
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -8,6 +8,7 @@ velocities of a cell's edges: this averages the noise from edge to edge and adds
 at the edges, that is, where it is not a run.
 """
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -23,7 +24,7 @@ from postprocess.solutions import RunSolution, Solution, case_of, choose_solutio
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
 
-CONSERVATION = (
+SHOWN_DIAGNOSTICS = (
     "mass_change",
     "total_energy_change",
     "potential_enstrophy_change",
@@ -86,12 +87,16 @@ def compare(directories: Sequence[Path], reference: str = "auto", days: Sequence
     for run in runs[1:]:
         _require_same_radius(run, runs[0])
         require_same_problem(run.directory, run.case, run.parameters, runs[0])
+    for run in runs:
+        for day in days:
+            run.require_snapshot(day)
     candidates = list(days) if days else _common_days(runs)
-    solution = choose_solution(reference, runs, candidates)
+    solution = choose_solution(reference, runs, candidates, every=bool(days))
     if isinstance(solution, RunSolution):
         _require_same_radius(solution.run, runs[0])
     chosen = tuple(sorted(set(days))) if days else (_last_known_day(solution, candidates),)
-    entries = [_entry(run, solution, day) for day in chosen for run in runs]
+    background = _background_depth(runs[0])
+    entries = [_entry(run, solution, day, background) for day in chosen for run in runs]
     if not any(entry.norms for entry in entries):
         raise SetupError(f"{runs[0].directory} is compared with nothing but itself; name another run or reference")
     return Comparison(solution, chosen, tuple(entries))
@@ -129,15 +134,27 @@ def is_reference(run: Run, solution: Solution) -> bool:
     return isinstance(solution, RunSolution) and solution.run.directory.resolve() == run.directory.resolve()
 
 
-def _entry(run: Run, solution: Solution, day: float) -> Entry:
-    norms = {} if is_reference(run, solution) else _norms(run, solution, day)
+def _background_depth(run: Run) -> float:
+    """Depth that is no signal in the thickness of `run`; zero, with a warning, where its case is not found again."""
+    case = case_of(run)
+    if case is not None:
+        return case.background_depth
+    warnings.warn(
+        f"{run.case}, the case of {run.directory}, cannot be made again from its name and parameters, so that norms "
+        "of thickness are taken without subtracting a background depth; put its file back if it has one",
+        stacklevel=1,
+    )
+    return 0.0
+
+
+def _entry(run: Run, solution: Solution, day: float, background: float) -> Entry:
+    norms = {} if is_reference(run, solution) else _norms(run, solution, day, background)
     return Entry(run, day, norms, _conservation(run, day))
 
 
-def _norms(run: Run, solution: Solution, day: float) -> dict[str, Norms]:
-    """Norms of the difference between `run` and `solution` by field."""
-    mesh, case = run.mesh, case_of(run)
-    background = 0.0 if case is None else case.background_depth
+def _norms(run: Run, solution: Solution, day: float, background: float) -> dict[str, Norms]:
+    """Norms of the difference between `run` and `solution` by field, those of thickness less `background`."""
+    mesh = run.mesh
     ours, theirs = fields_of(run, day), fields_on(run, solution, day)
     norms = {
         "thickness": scalar_norms(ours.thickness - background, theirs.thickness - background, mesh.area_cell),
@@ -154,7 +171,7 @@ def _conservation(run: Run, day: float) -> dict[str, float]:
     """The last diagnostics written until `day`."""
     until = run.series["time"] <= (day + DAY_TOLERANCE) * SECONDS_PER_DAY
     row = np.count_nonzero(until) - 1
-    return {name: float(run.series[name][row]) for name in CONSERVATION}
+    return {name: float(run.series[name][row]) for name in SHOWN_DIAGNOSTICS}
 
 
 def _require_same_radius(run: Run, first: Run) -> None:

@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from mesh.arrays import Array
 from postprocess.compare import Comparison, fields_of, fields_on
+from postprocess.folders import prepared_folder
 from postprocess.plots import CENTRAL_LONGITUDE, DOTS_PER_INCH, draw_mollweide_raster
 from postprocess.projections import mollweide_raster
 from postprocess.solutions import RunSolution, Solution
@@ -60,7 +61,7 @@ Values = dict[str, Array]
 
 def write_maps(comparison: Comparison, folder: Path) -> list[Path]:
     """Write maps of all fields and differences on the last day that was compared to `folder`; return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
+    prepared_folder(folder)
     day = comparison.days[-1]
     longitude, latitude = mollweide_raster(ROWS, COLUMNS)
     longitude = longitude + CENTRAL_LONGITUDE

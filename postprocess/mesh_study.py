@@ -114,14 +114,14 @@ def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
 def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
     """Read a mesh, or make it where it is missing or was made otherwise."""
     origin = f"mesh of a study: {FAMILIES[family].description}; {cells} cells asked for"
-    if not (path.exists() and _origin(path) == origin):
+    if not (path.exists() and _history(path).endswith(origin)):
         tell(f"{path.stem}: making the mesh")
         path.parent.mkdir(exist_ok=True)
         write_mesh(FAMILIES[family].make(cells), path, origin)
     return read_mesh(path)
 
 
-def _origin(path: Path) -> str:
+def _history(path: Path) -> str:
     """What a mesh file says of how it was made; nothing where it is not readable."""
     try:
         with netCDF4.Dataset(path) as file:

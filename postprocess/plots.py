@@ -20,6 +20,7 @@ from mesh.operators import vertex_to_cell
 from mesh.quality import mesh_quality, neighbour_distance_ratio, triangle_quality
 from mesh.sphere import from_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.folders import prepared_folder
 from postprocess.projections import (
     Polygons,
     mollweide,
@@ -41,7 +42,7 @@ ROUND_OFF_FLOOR = 1e-20
 
 def plot_run(run: Run, folder: Path) -> list[Path]:
     """Write all figures of `run` to `folder`; return their paths."""
-    folder.mkdir(parents=True, exist_ok=True)
+    prepared_folder(folder)
     last = run.last_snapshot()
     heading = f"{run.case}, {run.mesh.n_cells} cells, day {last.day:g}"
     figures = {

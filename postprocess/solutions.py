@@ -210,8 +210,8 @@ def _stored_reference(run: Run, days: Sequence[float], every: bool) -> Solution 
     """
     if stored_path(run.case) is None:
         return None
-    reference: Solution = _reference_files().stored_reference(run.case)
-    known = days_of_both(days, reference.days or ())
+    reference = _reference_files().stored_reference(run.case)
+    known = days_of_both(days, reference.days)
     if not known or (every and len(known) < len(days)):
         return None
     try:

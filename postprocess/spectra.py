@@ -15,6 +15,7 @@ from matplotlib.figure import Figure
 
 from mesh.arrays import Array
 from mesh.moments import mean_spacing
+from postprocess.folders import prepared_folder, require_possible_folder
 from postprocess.harmonics import Harmonics
 from postprocess.plots import DOTS_PER_INCH
 from postprocess.runs import Run
@@ -72,8 +73,9 @@ def spectra_of(run: Run, day: float) -> Spectra:
 
 def write_spectra_of(runs: Sequence[Run], days: Sequence[float], folder: Path) -> list[Path]:
     """Write table and figure of the spectra of `runs` on `days`, by default the last; return their paths."""
+    require_possible_folder(folder)
     spectra = [spectra_of(run, day) for run in runs for day in (days or (float(run.days[-1]),))]
-    folder.mkdir(parents=True, exist_ok=True)
+    prepared_folder(folder)
     table, picture = folder / "spectra.csv", folder / "spectra.png"
     write_spectra(spectra, table)
     spectra_figure(spectra).savefig(picture, dpi=DOTS_PER_INCH)

@@ -32,11 +32,6 @@ class Result:
     exact: Array
     area: Array
 
-    @property
-    def error(self) -> Array:
-        """Truncation error at each entity, for maps."""
-        return self.values - self.exact
-
 
 @dataclass(frozen=True)
 class Results:

@@ -16,6 +16,7 @@ class Invariants:
     """Mass (m3), energies (m5/s2), potential enstrophy (m/s2) and absolute vorticity (m2/s), per unit density.
 
     `available_potential_energy` counts from the state of rest with the same mass and a level surface.
+    `potential_energy_of_depth` counts from the bottom everywhere, so that it is positive whatever the topography.
     `planetary_vorticity_magnitude` is the integral of |f|, the yardstick for changes of absolute vorticity.
     """
 
@@ -23,6 +24,7 @@ class Invariants:
     kinetic_energy: float
     potential_energy: float
     available_potential_energy: float
+    potential_energy_of_depth: float
     potential_enstrophy: float
     absolute_vorticity: float
     planetary_vorticity_magnitude: float
@@ -36,6 +38,11 @@ class Invariants:
     def available_energy(self) -> float:
         """Kinetic and available potential energy, m5/s2."""
         return self.kinetic_energy + self.available_potential_energy
+
+    @property
+    def energy_of_depth(self) -> float:
+        """Kinetic energy and potential energy of the depth, m5/s2; positive, and of the size of what is summed."""
+        return self.kinetic_energy + self.potential_energy_of_depth
 
 
 def integral(values: Array) -> float:
@@ -60,6 +67,7 @@ def measure_invariants(model: ShallowWaterModel, state: State) -> Invariants:
         kinetic_energy=integral(volume * diagnosis.kinetic_energy),
         potential_energy=g * integral(volume * (0.5 * h + b)),
         available_potential_energy=0.5 * g * integral(mesh.area_cell * (h + b - level) ** 2),
+        potential_energy_of_depth=0.5 * g * integral(volume * h),
         potential_enstrophy=0.5 * integral(mesh.area_triangle * absolute_vorticity * diagnosis.potential_vorticity),
         absolute_vorticity=integral(mesh.area_triangle * absolute_vorticity),
         planetary_vorticity_magnitude=integral(mesh.area_triangle * np.abs(model.coriolis)),
@@ -84,17 +92,22 @@ class Changes:
 def relative_changes(initial: Invariants, present: Invariants) -> Changes:
     """Changes from `initial` to `present`.
 
-    A yardstick of zero (no rotation) is replaced by one, and an available energy that is lost in the round-off of the
-    total (a level surface at rest) by the total.
+    A yardstick of zero (no rotation) is replaced by one, and an available energy (of a level surface at rest) or a
+    total (that topography below zero makes vanish) which is lost in round-off by `Invariants.energy_of_depth`.
     """
     energy = (present.kinetic_energy - initial.kinetic_energy) + (present.potential_energy - initial.potential_energy)
-    at_rest = initial.available_energy < sys.float_info.epsilon * initial.total_energy
     return Changes(
         mass=(present.mass - initial.mass) / initial.mass,
-        total_energy=energy / (initial.total_energy if at_rest else initial.available_energy),
-        total_energy_of_total=energy / initial.total_energy,
+        total_energy=energy / _energy_yardstick(initial.available_energy, initial),
+        total_energy_of_total=energy / _energy_yardstick(initial.total_energy, initial),
         potential_enstrophy=(present.potential_enstrophy - initial.potential_enstrophy)
         / (initial.potential_enstrophy or 1.0),
         absolute_vorticity=(present.absolute_vorticity - initial.absolute_vorticity)
         / (initial.planetary_vorticity_magnitude or 1.0),
     )
+
+
+def _energy_yardstick(energy: float, initial: Invariants) -> float:
+    """The magnitude of `energy`, or the energy of the initial depth where it is lost in the round-off of that."""
+    lost = abs(energy) <= sys.float_info.epsilon * initial.energy_of_depth
+    return (initial.energy_of_depth or 1.0) if lost else abs(energy)

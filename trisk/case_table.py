@@ -33,8 +33,15 @@ def print_case(case: Case) -> None:
     table = Table("parameter", "default", "meaning", title=f"Parameters of {escape(case.name)}")
     meanings = parameter_meanings(case)
     for name, value in case.parameters().items():
-        table.add_row(name, str(value).lower() if isinstance(value, bool) else f"{value:.10g}", escape(meanings[name]))
+        table.add_row(name, escape(_in_words(value)), escape(meanings[name]))
     console.print(table)
+
+
+def _in_words(value: object) -> str:
+    """A value as one may type it; that of a case of a user may be anything."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    return f"{value:.10g}" if isinstance(value, float | int) else str(value)
 
 
 def _accuracy(case: Case) -> tuple[str, str]:

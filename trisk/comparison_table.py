@@ -5,7 +5,7 @@ import math
 from rich.console import Console
 from rich.table import Table
 
-from postprocess.compare import CONSERVATION, Comparison
+from postprocess.compare import SHOWN_DIAGNOSTICS, Comparison
 
 FIELD_LABELS = {
     "thickness": "thickness",
@@ -47,7 +47,7 @@ def _conservation_table(comparison: Comparison) -> Table:
     title = "Changes since the start: mass, available energy, potential enstrophy, absolute vorticity"
     table = _table(title, "day", "run", *changes, "max m/s")
     for entry in comparison.entries:
-        *values, speed = (entry.conservation[name] for name in CONSERVATION)
+        *values, speed = (entry.conservation[name] for name in SHOWN_DIAGNOSTICS)
         shown = (f"{value:+.1e}" for value in values)
         table.add_row(f"{entry.day:g}", str(entry.run.directory), *shown, f"{speed:.4g}")
     return table

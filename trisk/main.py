@@ -158,23 +158,13 @@ def run(
     """Run a test case and write snapshots and diagnostics."""
     from cases import find_case
     from cases.parameters import split_settings
-    from mesh import read_mesh, scvt_mesh
     from swe import Simulation
-    from trisk.report import convergence_bar, print_run
+    from trisk.meshes import chosen_mesh
+    from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
-    if (mesh_file is None) == (cells is None):
-        raise typer.BadParameter("give either --mesh FILE or --cells N")
-    if recompute_metrics and mesh_file is None:
-        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
-    if mesh_file is not None:
-        used = read_mesh(mesh_file, recompute_metrics)
-    else:
-        assert cells is not None
-        with convergence_bar(1e-8, not quiet) as show:
-            used = scvt_mesh(cells, callback=show)
     simulation = Simulation(
-        used,
+        chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
         chosen,
         output,
         time_step=time_step,
@@ -289,15 +279,19 @@ def compare(
     from postprocess.compare import compare as compare_runs
     from postprocess.compare import comparison_record
     from postprocess.compare_maps import write_maps
+    from postprocess.folders import require_possible_folder
     from swe.output import FIGURES_FOLDER
     from trisk.comparison_table import print_comparison
 
+    folder = output or run_directories[0] / FIGURES_FOLDER
+    require_possible_folder(folder)
     comparison = compare_runs(run_directories, reference, days or ())
-    maps = write_maps(comparison, output or run_directories[0] / FIGURES_FOLDER)
+    if not as_json:
+        print_comparison(comparison)
+    maps = write_maps(comparison, folder)
     if as_json:
         typer.echo(json.dumps({**comparison_record(comparison), "maps": [str(path) for path in maps]}))
         return
-    print_comparison(comparison)
     for path in maps:
         typer.echo(path)
 

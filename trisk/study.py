@@ -68,14 +68,12 @@ def time(
     """Run a case with several time steps: energy drift and error of the time stepping."""
     from cases import find_case
     from cases.parameters import split_settings
-    from mesh import read_mesh, scvt_mesh
     from postprocess.study_report import write_time_report
     from postprocess.time_study import TimePlan, carry_out
+    from trisk.meshes import chosen_mesh
 
     chosen = find_case(case, split_settings(settings or ()))
-    if (mesh_file is None) == (cells is None):
-        raise typer.BadParameter("give either --mesh FILE or --cells N")
-    used = read_mesh(mesh_file) if mesh_file is not None else scvt_mesh(cells or 0)
+    used = chosen_mesh(mesh_file, cells, recompute_metrics=False, quiet=quiet)
     plan = TimePlan(output, chosen, used, chosen.recommended_days if days is None else days, tuple(time_steps))
     tell = _teller(quiet)
     rows = carry_out(plan, not quiet, tell)

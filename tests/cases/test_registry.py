@@ -123,6 +123,17 @@ def test_parameter_that_is_no_number_is_kept(splash: Path) -> None:
         find_case(f"{splash}:Named", {"label": "y"})
 
 
+def test_parameters_that_a_case_of_a_user_cannot_take(splash: Path) -> None:
+    splash.write_text(
+        splash.read_text()
+        + "    def __post_init__(self):\n        if self.height > 99:\n            raise KeyError('high')\n"
+    )
+    line = len(splash.read_text().splitlines())
+    words = rf"splash.py:Splash cannot be made with height = 100\.0, line {line}: KeyError\('high'\)"
+    with pytest.raises(SetupError, match=words):
+        find_case(f"{splash}:Splash", {"height": "100"})
+
+
 def test_case_of_this_package_keeps_its_name(tmp_path: Path) -> None:
     path = tmp_path / "turned.py"
     path.write_text("from cases import Williamson2\nturned = Williamson2(angle=0.3)\n")
@@ -154,6 +165,34 @@ def test_case_of_this_package_keeps_its_name(tmp_path: Path) -> None:
         ("import nothing_of_the_kind\n", "mine.py:Mine", "line 1: ModuleNotFoundError"),
         ("import sys\nsys.exit(3)\n", "mine.py:Mine", "line 2: SystemExit"),
         (HEAD + "mine = 3\n", "mine.py:mine", "lacks background_depth, convergence_order, coriolis"),
+        (
+            HEAD + "class Mine(Case):\n    def __post_init__(self):\n        raise ValueError('no luck')" + METHODS,
+            "mine.py:Mine",
+            r"mine.py:Mine cannot be made with its own parameters, line 7: ValueError\('no luck'\)",
+        ),
+        (
+            HEAD + "class Mine(Case):\n    def __post_init__(self):\n        None + 1" + METHODS,
+            "mine.py:Mine",
+            "cannot be made with its own parameters, line 7: TypeError",
+        ),
+        (
+            HEAD + "class Mine(Case):\n    @property\n    def background_depth(self):\n        return 1 / 0" + METHODS,
+            "mine.py:Mine",
+            "a property of .*mine.py:Mine fails, line 8: ZeroDivisionError",
+        ),
+        *(
+            (
+                HEAD + "class Mine(Case):" + METHODS.replace("recommended_days = 1.0", f"recommended_days = {days}"),
+                "mine.py:Mine",
+                "recommended_days of .*mine.py:Mine is .*; give a number above 0",
+            )
+            for days in ("'five'", "float('nan')", "-1.0", "True")
+        ),
+        (
+            HEAD + "class Mine(Case):\n    convergence_order = 'two'" + METHODS,
+            "mine.py:Mine",
+            "convergence_order of .*mine.py:Mine is 'two'; give a number or None",
+        ),
     ],
 )
 def test_file_without_a_case_is_refused(content: str | None, address: str, words: str, tmp_path: Path) -> None:

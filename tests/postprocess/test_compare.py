@@ -14,7 +14,7 @@ from cases import Williamson1, Williamson2, Williamson5
 from cases.base import Case
 from mesh import VoronoiMesh, scvt_mesh
 from mesh.quadrature import cell_means
-from postprocess import compare_maps, solutions
+from postprocess import compare_maps, solutions, stored_references
 from postprocess.compare import compare, comparison_record, fields_on
 from postprocess.norms import Norms, scalar_norms, vector_norms
 from postprocess.runs import read_run
@@ -61,7 +61,9 @@ def folder_of_runs(runs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def with_stored(monkeypatch: pytest.MonkeyPatch, reference: "Stored | None") -> None:
-    """Let `reference` be the one that comes with the package, and the one in any file."""
+    """Let `reference` be the one that comes with the package for test case 5, and the one in any file."""
+    path = None if reference is None else Path("williamson5.nc")
+    monkeypatch.setattr(solutions, "stored_path", lambda case: path if case == "williamson5" else None)
     files = SimpleNamespace(stored_reference=lambda case: reference, read_reference=lambda path: reference)
     monkeypatch.setattr(solutions, "_reference_files", lambda: files)
 
@@ -193,6 +195,29 @@ def test_stored_reference_is_chosen_where_it_fits(monkeypatch: pytest.MonkeyPatc
     assert compare([Path("steady-162")]).solution.name == "exact solution"
 
 
+def test_stored_reference_knows_all_days_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    both = [Path("mountain-162"), Path("mountain-642")]
+    with_stored(monkeypatch, Stored(Williamson5()))
+    assert isinstance(compare(both, days=[0.5, 1.0]).solution, RunSolution)
+    assert compare(both, days=[0.5, 0.0]).days == (0.0, 0.5)
+    with pytest.raises(SetupError, match=r"nothing to compare mountain-162 with: .* is known on day 0\.5, 1;"):
+        compare(both[:1], days=[0.5, 1.0])
+    with_stored(monkeypatch, Stored(Williamson5(), days=(0.0, 0.5)))
+    comparison = compare(both, days=[0.5, 0.0])
+    assert (comparison.solution.name, comparison.days) == ("spectral T42", (0.0, 0.5))
+
+
+def test_only_cases_of_the_package_have_stored_references(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setattr(stored_references, "FOLDER", tmp_path / "references")
+    (tmp_path / "references").mkdir()
+    for name in ("williamson5", "mine"):
+        (tmp_path / "references" / f"{name}.nc").touch()
+    (tmp_path / "mine.py:Mine.nc").touch()
+    assert stored_references.stored_path("williamson5") == tmp_path / "references" / "williamson5.nc"
+    for name in ("williamson6", "mine", f"{tmp_path}/mine.py:Mine", "../references/williamson5"):
+        assert stored_references.stored_path(name) is None
+
+
 def test_reference_file_must_fit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     file = tmp_path / "reference.nc"
     file.touch()
@@ -211,10 +236,15 @@ def test_reference_file_must_fit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 def test_without_the_spectral_package(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.undo()
     monkeypatch.chdir(runs)
+    monkeypatch.setattr(stored_references, "FOLDER", tmp_path / "nowhere")
     monkeypatch.setitem(sys.modules, "ducc0", None)
     for name in ("harmonics", "spectral_model", "reference", "reference_file"):
         monkeypatch.delitem(sys.modules, f"postprocess.{name}", raising=False)
+    with pytest.raises(SetupError, match="there is nothing to compare mountain-162 with"):
+        compare([Path("mountain-162")])
     (tmp_path / "reference.nc").touch()
+    (tmp_path / "williamson5.nc").touch()
+    monkeypatch.setattr(stored_references, "FOLDER", tmp_path)
     for reference in (str(tmp_path / "reference.nc"), "auto"):
         with pytest.raises(SetupError, match=r"need the package ducc0; install .*trisk\[reference\]"):
             compare([Path("mountain-162")], reference)
@@ -246,6 +276,8 @@ def test_refusals(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
         ([mountain, tmp_path / "other-days"], "auto", (0.5,), r"no snapshot of day 0\.5; its days are 0, 0\.25"),
         ([mountain], str(tmp_path / "other-days"), (1.0,), "no snapshot of day 1"),
         ([steady], "auto", (7.0,), "no snapshot of day 7"),
+        ([mountain], "auto", (float("nan"),), "mountain-162 has no snapshot of day nan; its days are 0, 0.5, 1"),
+        ([mountain], "auto", (-1.0,), "mountain-162 has no snapshot of day -1"),
     ):
         with pytest.raises(SetupError, match=words):
             compare(directories, reference, days)
@@ -254,8 +286,47 @@ def test_refusals(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
 def test_own_cases_are_compared_with_each_other(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
     for name, time_step in (("one", 1200.0), ("two", 600.0)):
         write_run(tmp_path / name, small_mesh, OwnCase(), days=0.5, time_step=time_step)
-    entry = compare([tmp_path / "one", tmp_path / "two"], str(tmp_path / "one")).entries[1]
+    with pytest.warns(UserWarning, match="of-my-own, .* without subtracting a background depth") as warned:
+        entry = compare([tmp_path / "one", tmp_path / "two"], str(tmp_path / "one"), [0.0, 0.5]).entries[-1]
+    assert len(warned) == 1
     assert 0.0 < entry.norms["thickness"].l2 < 1e-4
+
+
+@dataclass(frozen=True)
+class Plain(Williamson2):
+    """Numbers in place of fields."""
+
+    def velocity(self, longitude: np.ndarray, latitude: np.ndarray, time: float = 0.0) -> tuple:
+        return 1, np.zeros(latitude.shape)
+
+
+class FailsLater(Williamson2):
+    """Knows no time but the start."""
+
+    def thickness(self, longitude: np.ndarray, latitude: np.ndarray, time: float = 0.0) -> np.ndarray:
+        return super().thickness(longitude, latitude) / [1.0][int(time > 0.0)]
+
+    def vorticity(self, longitude: np.ndarray, latitude: np.ndarray, time: float = 0.0) -> np.ndarray:
+        return np.zeros(3)
+
+    def velocity(self, longitude: np.ndarray, latitude: np.ndarray, time: float = 0.0) -> tuple:
+        return (np.zeros(latitude.shape),)
+
+
+def test_exact_solution_that_fails_is_told_in_a_sentence() -> None:
+    longitude, latitude = np.zeros(4), np.linspace(-1.0, 1.0, 4)
+    zonal, meridional = ExactSolution(Plain()).velocity(longitude, latitude, 1.0)
+    np.testing.assert_array_equal(zonal, np.ones(4))
+    np.testing.assert_array_equal(meridional, np.zeros(4))
+    solution = ExactSolution(FailsLater())
+    assert solution.thickness(longitude, latitude, 0.0).shape == (4,)
+    for function, words in (
+        (solution.thickness, r"thickness of williamson2 failed in line \d+ of .*test_compare.py: IndexError"),
+        (solution.vorticity, r"vorticity of williamson2 gives an array of shape \(3,\)"),
+        (solution.velocity, "velocity of williamson2 gives tuple; it must give an eastward and a northward velocity"),
+    ):
+        with pytest.raises(SetupError, match=words):
+            function(longitude, latitude, 1.0)
 
 
 def test_record_is_json_without_nan(runs: Path) -> None:

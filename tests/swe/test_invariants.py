@@ -1,8 +1,11 @@
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 
-from cases import Williamson2
+from cases import LakeAtRest, Williamson2
 from mesh import VoronoiMesh
+from mesh.arrays import Array
 from swe import Simulation
 from swe.invariants import integral, relative_changes
 
@@ -43,3 +46,32 @@ def test_sum_is_exactly_rounded_in_any_order() -> None:
     values = np.random.default_rng(0).normal(size=1000) * 10.0 ** np.random.default_rng(1).integers(-12, 12, 1000)
     assert integral(values) == integral(values[::-1]) == integral(np.sort(values))
     assert integral(np.array([1e16, 1.0, -1e16])) == 1.0
+
+
+@dataclass(frozen=True)
+class Basin(LakeAtRest):
+    """Fluid at rest, 1000 m deep, over a flat bottom."""
+
+    bottom: float = 0.0
+
+    def topography(self, longitude: Array, latitude: Array) -> Array:
+        return np.full(longitude.shape, self.bottom)
+
+    def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
+        return np.full(longitude.shape, 1000.0)
+
+
+@pytest.mark.parametrize("bottom", [-1000.0, -500.0, 0.0, 500.0])
+def test_yardsticks_of_energy_do_not_depend_on_where_heights_count_from(
+    icosahedral_mesh: VoronoiMesh, bottom: float
+) -> None:
+    """The total energy of fluid at rest is negative over a bottom at -depth, and zero over one at -depth/2."""
+    simulation = Simulation(icosahedral_mesh, Basin(bottom=bottom))
+    start = simulation.initial_invariants
+    assert np.sign(start.total_energy) == np.sign(bottom + 500.0)
+    simulation.state.normal_velocity[:] = 1.0
+    now = simulation.invariants
+    changes = relative_changes(start, now)
+    gained = now.kinetic_energy / (0.5 * simulation.case.gravity * 1000.0 * start.mass)
+    assert changes.total_energy == pytest.approx(gained, rel=1e-9)
+    assert changes.total_energy_of_total == pytest.approx(gained / abs(1.0 + bottom / 500.0 or 1.0), rel=1e-9)

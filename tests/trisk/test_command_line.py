@@ -27,6 +27,11 @@ def test_from_mesh_to_figures(trisk, mesh_file: Path, tmp_path: Path) -> None:
     code, out, _ = trisk("plot", tmp_path / "run")
     assert code == 0
     assert len(list((tmp_path / "run" / "figures").glob("*.png"))) == len(out.split()) == 5
+    (tmp_path / "run" / "figures").rename(tmp_path / "figures")
+    (tmp_path / "run" / "figures").touch()
+    code, _, err = trisk("plot", tmp_path / "run")
+    assert code == 2
+    assert "figures is no folder that one can write to" in err
     assert "trisk mesh --cells 162" in netCDF4.Dataset(mesh_file).history
 
 
@@ -111,6 +116,16 @@ def test_case_of_a_user(trisk, mesh_file: Path, tmp_path: Path, monkeypatch: pyt
     assert "line 7 of" in err
     assert "Traceback" not in err
     assert json.loads(Path("run/run.json").read_text())["status"] == "completed"
+
+
+def test_parameter_of_a_user_may_be_text(trisk, tmp_path: Path) -> None:
+    (tmp_path / "mine.py").write_text(
+        "from dataclasses import dataclass\nfrom cases import Williamson5\n@dataclass(frozen=True)\n"
+        "class Mine(Williamson5):\n    label: str = 'of [stone]'\n"
+    )
+    code, out, err = trisk("cases", f"{tmp_path}/mine.py:Mine")
+    assert (code, err) == (0, "")
+    assert "of [stone]" in out
 
 
 def damaged(path: Path, kind: str) -> None:

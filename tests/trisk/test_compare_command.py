@@ -59,10 +59,23 @@ def test_bad_input_is_one_sentence_and_code_2(compare, runs: list[Path], tmp_pat
         ((runs[0], "--reference", runs[0]), "nothing but itself"),
         ((runs[0], "--day", 4), "no snapshot of day 4"),
         ((runs[0], "--reference", "nowhere.nc"), "there is no reference 'nowhere.nc'"),
+        ((runs[0], "--day", "nan"), "no snapshot of day nan"),
         ((tmp_path,), "holds no readable run"),
+        ((runs[0], "-o", runs[0] / "run.json"), "run.json is no folder that one can write to"),
+        ((tmp_path, "-o", runs[0] / "run.json"), "run.json is no folder that one can write to"),
     ):
         code, out, err = compare(*arguments)
         assert (code, out) == (2, ""), arguments
         assert err.startswith("error: ")
         assert err.count("\n") == 1
         assert words in err
+
+
+def test_table_is_there_before_the_maps(compare, runs: list[Path], monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise OSError("No space left on device")
+
+    monkeypatch.setattr(compare_maps, "_save", full)
+    code, out, err = compare(*runs)
+    assert (code, err) == (1, "error: No space left on device\n")
+    assert "reference: exact solution" in out

@@ -1,0 +1,24 @@
+"""The mesh that a command runs on: one that is read, or one that is generated for it."""
+
+from pathlib import Path
+
+import typer
+
+from mesh import VoronoiMesh, read_mesh, scvt_mesh
+from mesh.build import UNIFORM_TOLERANCE
+from trisk.report import convergence_bar
+
+
+def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bool, quiet: bool) -> VoronoiMesh:
+    """The mesh of `mesh_file`, or one of `cells` generated with a bar of progress unless `quiet`.
+
+    Raises `typer.BadParameter` where neither is given, or both.
+    """
+    if mesh_file is not None and cells is None:
+        return read_mesh(mesh_file, recompute_metrics)
+    if cells is None or mesh_file is not None:
+        raise typer.BadParameter("give either --mesh FILE or --cells N")
+    if recompute_metrics:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
+    with convergence_bar(UNIFORM_TOLERANCE, not quiet) as show:
+        return scvt_mesh(cells, callback=show)
