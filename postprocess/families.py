@@ -10,7 +10,7 @@ from mesh.optimizer import Limits
 from mesh.scvt import Request, generate_scvt, starting_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
-STOPPED_RESIDUALS = (3e-2, 1e-2, 1e-3)
+STOPPED_RESIDUALS = (2e-2, 1e-2, 1e-3)
 """Centroid residuals, in mean spacings, at which Lloyd's method is stopped early; bisected icosahedra have 0.037."""
 
 NESTED_SHARE = 4
