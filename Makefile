@@ -61,8 +61,9 @@ $(STUDY)/jet-%.done: runs/mesh.%.nc
 	touch $@
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
-	for case in williamson5 williamson6 galewsky; do \
-		$(BIN)/trisk reference $$case -o postprocess/references/$$case.nc || exit 1; done
+	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/references/williamson5.nc
+	$(BIN)/trisk reference williamson6 --truncation 170 -o postprocess/references/williamson6.nc
+	$(BIN)/trisk reference galewsky --truncation 255 -o postprocess/references/galewsky.nc
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info
