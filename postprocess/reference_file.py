@@ -2,6 +2,7 @@
 
 import json
 from dataclasses import dataclass
+from importlib.metadata import version
 from pathlib import Path
 
 import netCDF4
@@ -78,7 +79,7 @@ def write_reference(reference: Reference, path: Path) -> None:
                 "source": "spectral-transform shallow-water model of trisk; " + reference.settings,
                 "references": reference.case.reference,
                 "history": reference.history,
-                "versions": json.dumps(package_versions()),
+                "versions": json.dumps(package_versions() | {"ducc0": version("ducc0")}),
                 "comment": "coefficients of orthonormal spherical harmonics with orders m >= 0, all degrees of "
                 "order 0, then those of order 1, ...; parts are real and imaginary",
             }

@@ -61,7 +61,7 @@ def test_file_keeps_all_but_a_part_of_the_uncertainty(reference: Reference, tmp_
             assert 0.0 < change < 1.2 * ROUNDING * reference.uncertainty(day)[measure]
     with netCDF4.Dataset(path) as file:
         assert "del^8" in file.source
-        assert '"numpy"' in file.versions
+        assert '"ducc0"' in file.versions
 
 
 def test_refusals(reference: Reference, tmp_path: Path) -> None:
