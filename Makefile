@@ -62,7 +62,7 @@ $(STUDY)/jet-%.done: runs/mesh.%.nc
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
 	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/references/williamson5.nc
-	$(BIN)/trisk reference williamson6 --truncation 170 -o postprocess/references/williamson6.nc
+	$(BIN)/trisk reference williamson6 --truncation 170 --damping-hours 24 -o postprocess/references/williamson6.nc
 	$(BIN)/trisk reference galewsky --truncation 255 -o postprocess/references/galewsky.nc
 
 clean:

@@ -201,5 +201,5 @@ def _png(figure: Figure) -> bytes:
     """The figure as PNG with a palette, a third of the size of one in true colour."""
     full, small = io.BytesIO(), io.BytesIO()
     figure.savefig(full, dpi=REPORT_DOTS_PER_INCH, format="png")
-    Image.open(full).convert("RGB").quantize(256, Image.Quantize.MAXCOVERAGE).save(small, format="PNG", optimize=True)
+    Image.open(full).convert("RGB").quantize(256).save(small, format="PNG", optimize=True)
     return small.getvalue()
