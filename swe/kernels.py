@@ -11,7 +11,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.voronoi_mesh import VoronoiMesh
 
-compiled = numba.njit(cache=True, parallel=True)
+compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
 
 
 def edge_signs_on_cell(mesh: VoronoiMesh) -> Array:

@@ -17,6 +17,7 @@ from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, SetupError
+from swe.fused import FusedRungeKutta
 from swe.invariants import Invariants, measure_invariants, relative_changes
 from swe.model import ShallowWaterModel, check_field
 from swe.output import (
@@ -34,7 +35,6 @@ from swe.output import (
 from swe.progress import ProgressBar
 from swe.schedule import Schedule, dividing_step, step_towards
 from swe.state import State
-from swe.time_stepping import RungeKutta
 
 DEFAULT_COURANT_NUMBER = 0.8
 """Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
@@ -153,7 +153,7 @@ class Simulation:
         self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
         self.initial_courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = measure_invariants(self.model, self.state)
-        self._stepper = RungeKutta(self.model.tendency, self.state)
+        self._stepper = FusedRungeKutta(self.model)
         self._directory = None if output is None else Path(output)
         if self._directory is not None:
             _check_directory(self._directory, overwrite)
@@ -202,10 +202,10 @@ class Simulation:
             self._stepper.step(self.state, step)
             self.time = following
             self.steps += 1
-            problem = self._problem_with_state()
-            if problem:
+            if self._stepper.unsound:
                 raise RunError(
-                    f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {problem}; the Courant number "
+                    f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
+                    f"the Courant number "
                     f"was {self.initial_courant_number:.2f} at the start: where that is above "
                     f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
                 )
