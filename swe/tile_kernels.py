@@ -22,7 +22,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 
 MIRROR = 12300
-"""Distance of -U from U in scratch, so the most edges of a tile; no whole pages, which would share sets of the cache."""
+"""Distance of -U from U in scratch, and so the most edges of a tile; whole pages would share sets of the cache."""
 
 RING = 6
 """Sides that the vectorised loop over cells computes; the few cells with more are done again apart."""
@@ -33,7 +33,8 @@ TileArrays = tuple[Index, Index, Index, Index, Index, Index, Array, Index]
 
 Arrays = tuple[Array, ...]
 
-inlined = numba.njit(forceinline=True, no_cpython_wrapper=True, no_cfunc_wrapper=True, **options)
+part_options: dict[str, Any] = {**options, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+inlined = numba.njit(**part_options)
 compiled = numba.njit(parallel=True, cache=True, **options)
 
 
