@@ -2,8 +2,6 @@
 
 import os
 import time as clock
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
@@ -35,12 +33,10 @@ from swe.output import (
 from swe.progress import ProgressBar
 from swe.schedule import Schedule, dividing_step, step_towards
 from swe.state import State
+from swe.threads import worthwhile_threads
 
 DEFAULT_COURANT_NUMBER = 0.8
 """Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
-
-CELLS_PER_THREAD = 4000
-"""A thread pays only where it has this many cells to itself; results do not depend on the number of threads."""
 
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
@@ -182,7 +178,7 @@ class Simulation:
             )
         snapshots = Schedule(self.configuration.snapshot_interval, end)
         diagnostics = Schedule(self.configuration.diagnostics_interval, end)
-        with _worthwhile_threads(self.mesh.n_cells), ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar:
+        with worthwhile_threads(self.mesh.n_cells), ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar:
             recorder = _Recorder(self, days)
             try:
                 recorder.begin()
@@ -304,17 +300,6 @@ class _Recorder:
                 "versions": package_versions(),
             },
         )
-
-
-@contextmanager
-def _worthwhile_threads(n_cells: int) -> Iterator[None]:
-    """Use no more threads, for a while, than `n_cells` can keep busy."""
-    available = numba.get_num_threads()
-    numba.set_num_threads(max(1, min(available, n_cells // CELLS_PER_THREAD)))
-    try:
-        yield
-    finally:
-        numba.set_num_threads(available)
 
 
 def _require_positive(what: str, value: float) -> None:

@@ -4,6 +4,7 @@ import json
 import shlex
 import sys
 import warnings
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
@@ -294,6 +295,25 @@ def compare(
         return
     for path in maps:
         typer.echo(path)
+
+
+@app.command()
+def bench(
+    cells: Annotated[
+        list[int] | None, typer.Option("--cells", help="Number of cells, repeatable; by default 10242 and 40962.")
+    ] = None,
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time on this mesh instead.")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Time the solver: cost of a step, beside the plain loops and the memory of the machine."""
+    from trisk.bench import print_timings, timings
+
+    results = timings(mesh_file, cells or (), show=not quiet)
+    if as_json:
+        typer.echo(json.dumps([asdict(timing) for timing in results]))
+    else:
+        print_timings(results)
 
 
 def _command_line() -> str:

@@ -1,0 +1,92 @@
+"""What a step costs, beside the plain loops and beside what the memory of the machine could do."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array
+from swe.fused import FusedRungeKutta
+from swe.model import ShallowWaterModel
+from swe.state import State
+from swe.threads import worthwhile_threads
+from swe.time_stepping import RungeKutta
+
+ROUNDS = 9
+"""The fused step, the plain one and the triad take turns this many times; medians are what is told."""
+
+SECONDS_PER_TURN = 0.3
+"""The fused step is repeated for about so long in a turn, the plain one for about three times as long."""
+
+TRIAD_SIZE = 25_000_000
+"""Three arrays of 200 MB: more than the last cache holds."""
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Medians over alternating turns; a step is one of classical RK4.
+
+    `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that by the time.
+    `triad_gb_per_s` is the rate of the STREAM triad in the same process, with two arrays read and one written, and
+    `fraction_of_triad` their ratio. `plain_twin_ratio` is the median over the turns of the plain step's time by that
+    of the fused one.
+    """
+
+    cells: int
+    threads: int
+    ns_per_cell_step: float
+    plain_ns_per_cell_step: float
+    plain_twin_ratio: float
+    bytes_per_cell_step: float
+    gb_per_s: float
+    triad_gb_per_s: float
+    fraction_of_triad: float
+
+
+def measure(model: ShallowWaterModel, state: State, time_step: float) -> Timing:
+    """Time steps of the fused and of the plain path from `state`, which is left as it is, with a run's threads."""
+    cells = model.mesh.n_cells
+    fused, plain = FusedRungeKutta(model), RungeKutta(model.tendency, state)
+    fast, slow = state.copy(), state.copy()
+    a, b, c = (np.ones(TRIAD_SIZE) for _ in range(3))
+    with worthwhile_threads(cells) as threads:
+        once = [_seconds(lambda: fused.step(fast, time_step), 1) for _ in range(3)]
+        plain.step(slow, time_step)
+        _triad(a, b, c, 3.0)
+        repeats = max(1, round(SECONDS_PER_TURN / min(once)))
+        turns = np.empty((ROUNDS, 3))
+        for turn in turns:
+            turn[0] = _seconds(lambda: fused.step(fast, time_step), repeats)
+            turn[1] = _seconds(lambda: plain.step(slow, time_step), max(1, repeats // 2))
+            turn[2] = _seconds(lambda: _triad(a, b, c, 3.0), 1)
+    nanoseconds, plain_nanoseconds, _ = 1e9 * np.median(turns, axis=0) / cells
+    triad = 24 * TRIAD_SIZE / np.median(turns[:, 2]) / 1e9
+    volume = fused.bytes_per_step / cells
+    return Timing(
+        cells=cells,
+        threads=threads,
+        ns_per_cell_step=float(nanoseconds),
+        plain_ns_per_cell_step=float(plain_nanoseconds),
+        plain_twin_ratio=float(np.median(turns[:, 1] / turns[:, 0])),
+        bytes_per_cell_step=volume,
+        gb_per_s=float(volume / nanoseconds),
+        triad_gb_per_s=float(triad),
+        fraction_of_triad=float(volume / nanoseconds / triad),
+    )
+
+
+def _seconds(work: Callable[[], None], repeats: int) -> float:
+    """Seconds that `work` takes, the mean of `repeats`."""
+    begin = time.perf_counter()
+    for _ in range(repeats):
+        work()
+    return (time.perf_counter() - begin) / repeats
+
+
+@numba.njit(parallel=True, cache=True)
+def _triad(a: Array, b: Array, c: Array, factor: float) -> None:
+    """Compute a = b + factor c, the fourth kernel of STREAM (McCalpin 1995)."""
+    for i in numba.prange(a.size):
+        a[i] = b[i] + factor * c[i]
