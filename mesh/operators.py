@@ -6,12 +6,12 @@ are the plain statement of the operators; the solver's kernels are tested agains
 
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from mesh.arrays import Array, sum_by_index
-from mesh.sphere import dot, east_north
-from mesh.voronoi_mesh import Topology, VoronoiMesh
+from mesh.arrays import Array, Index, sum_by_index
+from mesh.voronoi_mesh import VoronoiMesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,25 +109,50 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
     Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
     exact for a uniform flow in the plane.
     """
-    east, north = east_north(mesh.lon_cell, mesh.lat_cell)
-    edges, inside = edges_of_cells(mesh)
-    normals = mesh.cell_points[mesh.cells_on_edge[:, 1]] - mesh.cell_points[mesh.cells_on_edge[:, 0]]
-    normals /= np.sqrt(dot(normals, normals))[:, None]
-    normals_east = inside * dot(normals[edges], east[:, None, :])
-    normals_north = inside * dot(normals[edges], north[:, None, :])
-    speeds = inside * normal_velocity[edges]
-    ee, en, nn = (normals_east**2).sum(1), (normals_east * normals_north).sum(1), (normals_north**2).sum(1)
-    right_east, right_north = (normals_east * speeds).sum(1), (normals_north * speeds).sum(1)
-    determinant = ee * nn - en * en
-    zonal = (nn * right_east - en * right_north) / determinant
-    meridional = (ee * right_north - en * right_east) / determinant
+    return _velocity_at_cells(
+        normal_velocity,
+        mesh.n_edges_on_cell,
+        mesh.edges_on_cell,
+        mesh.cells_on_edge,
+        mesh.cell_points,
+        mesh.lon_cell,
+        mesh.lat_cell,
+    )
+
+
+@numba.njit(cache=True, parallel=True)
+def _velocity_at_cells(
+    normal_velocity: Array,
+    n_edges_on_cell: Index,
+    edges_on_cell: Index,
+    cells_on_edge: Index,
+    points: Array,
+    longitude: Array,
+    latitude: Array,
+) -> tuple[Array, Array]:
+    zonal, meridional = np.empty(len(points)), np.empty(len(points))
+    for c in numba.prange(len(points)):
+        sin_lon, cos_lon = np.sin(longitude[c]), np.cos(longitude[c])
+        sin_lat, cos_lat = np.sin(latitude[c]), np.cos(latitude[c])
+        ee = en = nn = right_east = right_north = 0.0
+        for j in range(n_edges_on_cell[c]):
+            edge = edges_on_cell[c, j]
+            first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
+            x = points[second, 0] - points[first, 0]
+            y = points[second, 1] - points[first, 1]
+            z = points[second, 2] - points[first, 2]
+            length = np.sqrt(x * x + y * y + z * z)
+            east = (cos_lon * y - sin_lon * x) / length
+            north = (cos_lat * z - sin_lat * (cos_lon * x + sin_lon * y)) / length
+            ee += east * east
+            en += east * north
+            nn += north * north
+            right_east += east * normal_velocity[edge]
+            right_north += north * normal_velocity[edge]
+        determinant = ee * nn - en * en
+        zonal[c] = (nn * right_east - en * right_north) / determinant
+        meridional[c] = (ee * right_north - en * right_east) / determinant
     return zonal, meridional
-
-
-def edges_of_cells(topology: Topology) -> tuple[Array, Array]:
-    """Edges of every cell (n_cells, max_edges), 0 where filled, and 1.0 or 0.0 for what is an edge or filled."""
-    inside = topology.on_ring
-    return np.where(inside, topology.edges_on_cell, 0), inside.astype(float)
 
 
 def vertex_to_cell(mesh: VoronoiMesh, values: Array) -> Array:

@@ -1,12 +1,11 @@
 """Global integrals that the continuous equations conserve, and their changes in the course of a run."""
 
-import math
 import sys
 from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.arrays import Array
+from swe.exact_sum import exact_sum
 from swe.model import ShallowWaterModel
 from swe.state import State
 
@@ -45,11 +44,6 @@ class Invariants:
         return self.kinetic_energy + self.potential_energy_of_depth
 
 
-def integral(values: Array) -> float:
-    """Exactly rounded sum, the same in any order."""
-    return math.fsum(values)
-
-
 def measure_invariants(model: ShallowWaterModel, state: State) -> Invariants:
     """The invariants of `state` on the mesh of `model`.
 
@@ -59,18 +53,18 @@ def measure_invariants(model: ShallowWaterModel, state: State) -> Invariants:
     mesh, diagnosis = model.mesh, model.diagnose(state)
     h, b, g = state.thickness, model.topography, model.gravity
     volume = mesh.area_cell * h
-    mass = integral(volume)
-    level = integral(mesh.area_cell * (h + b)) / integral(mesh.area_cell)
+    mass = exact_sum(volume)
+    level = exact_sum(mesh.area_cell * (h + b)) / exact_sum(mesh.area_cell)
     absolute_vorticity = model.coriolis + diagnosis.relative_vorticity
     return Invariants(
         mass=mass,
-        kinetic_energy=integral(volume * diagnosis.kinetic_energy),
-        potential_energy=g * integral(volume * (0.5 * h + b)),
-        available_potential_energy=0.5 * g * integral(mesh.area_cell * (h + b - level) ** 2),
-        potential_energy_of_depth=0.5 * g * integral(volume * h),
-        potential_enstrophy=0.5 * integral(mesh.area_triangle * absolute_vorticity * diagnosis.potential_vorticity),
-        absolute_vorticity=integral(mesh.area_triangle * absolute_vorticity),
-        planetary_vorticity_magnitude=integral(mesh.area_triangle * np.abs(model.coriolis)),
+        kinetic_energy=exact_sum(volume * diagnosis.kinetic_energy),
+        potential_energy=g * exact_sum(volume * (0.5 * h + b)),
+        available_potential_energy=0.5 * g * exact_sum(mesh.area_cell * (h + b - level) ** 2),
+        potential_energy_of_depth=0.5 * g * exact_sum(volume * h),
+        potential_enstrophy=0.5 * exact_sum(mesh.area_triangle * absolute_vorticity * diagnosis.potential_vorticity),
+        absolute_vorticity=exact_sum(mesh.area_triangle * absolute_vorticity),
+        planetary_vorticity_magnitude=exact_sum(mesh.area_triangle * np.abs(model.coriolis)),
     )
 
 

@@ -124,6 +124,18 @@ def velocity_tendency(
 
 
 @compiled
+def largest_rate(h: Array, u: Array, g: float, waves: bool, cells_on_edge: Index, dc_edge: Array) -> float:
+    """Largest (sqrt(g h) + |u|) / d_e over all edges, 1/s, with the deeper cell's h; |u| / d_e without waves."""
+    largest = 0.0
+    for e in numba.prange(u.size):
+        speed = abs(u[e])
+        if waves:
+            speed += np.sqrt(g * max(h[cells_on_edge[e, 0]], h[cells_on_edge[e, 1]]))
+        largest = max(largest, speed / dc_edge[e])
+    return largest
+
+
+@compiled
 def add_scaled(y: Array, factor: float, k: Array, result: Array) -> None:
     """Result = y + factor k, entry by entry; `result` may be `y`."""
     for i in numba.prange(y.size):

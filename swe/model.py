@@ -119,12 +119,10 @@ class ShallowWaterModel:
         frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
         which has no waves, it is the largest |u| dt / d.
         """
-        speed = np.abs(state.normal_velocity)
-        if not self.prescribed_wind:
-            first, second = self.mesh.cells_on_edge.T
-            depth = np.maximum(state.thickness[first], state.thickness[second])
-            speed = np.sqrt(self.gravity * depth) + speed
-        return float(time_step * np.max(speed / self.mesh.dc_edge))
+        mesh, waves = self.mesh, not self.prescribed_wind
+        return time_step * kernels.largest_rate(
+            state.thickness, state.normal_velocity, self.gravity, waves, mesh.cells_on_edge, mesh.dc_edge
+        )
 
     def _update_vorticity(self, state: State) -> None:
         mesh = self.mesh

@@ -72,11 +72,12 @@ def test_meshes_have_the_cells_that_the_loops_treat_apart(any_mesh: VoronoiMesh)
         assert sides.max() > RING + 2
 
 
-def test_a_mesh_in_any_numbering_gives_the_same(larger_mesh: VoronoiMesh) -> None:
+def test_a_mesh_in_any_numbering_gives_the_same(larger_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cells in no order at all: the tiles follow the curve, and the step puts the state into their order and back."""
     points = larger_mesh.cell_points
     shuffled = points[np.random.default_rng(2).permutation(len(points))]
     mesh = mesh_from_points(shuffled)
+    monkeypatch.setattr(build_tiles, "__defaults__", (300,))
     # As in files of others: edges in another order than that of their lower cells.
     model, state = random_model(_with_cells_shuffled(mesh))
     tiles = FusedRungeKutta(model).tiles
