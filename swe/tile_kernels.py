@@ -14,10 +14,13 @@ Indices are unsigned, as signed ones are tested for wrap-around, and slices are 
 loop calls, as the compiler is told that arrays do not overlap only where the loop itself makes no views.
 """
 
+from contextlib import suppress
 from typing import Any
 
 import numba
 import numpy as np
+from numba import types
+from numba.extending import intrinsic
 
 from mesh.arrays import Array, Index
 
@@ -285,6 +288,23 @@ def _stage_of_tile(
         _add_scaled(edge, next_edge, y[1], weight * time_step, du, result[1])
 
 
+@intrinsic
+def _use_widest_vectors(_typing_context: Any) -> Any:
+    """Let the loop that calls this use vectors of 512 bits where the processor has them.
+
+    The compiler prefers 256 bits even there, to spare the clock of older processors, at a seventh of the speed.
+    The attribute is not among those that llvmlite knows by name, so it is added to the set beneath; where that ceases
+    to work, the loop is as fast as without.
+    """
+
+    def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        with suppress(TypeError):
+            set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), add_attribute
+
+
 @compiled
 def _stage(
     tiles: TileArrays,
@@ -307,6 +327,7 @@ def _stage(
     leaves `result` alone and counts unsound values.
     """
     for tile in numba.prange(unsound.size):
+        _use_widest_vectors()  # type: ignore[call-arg]
         _stage_of_tile(
             tile,
             numba.get_thread_id(),
