@@ -1,0 +1,49 @@
+import json
+from pathlib import Path
+
+import pytest
+
+import swe.benchmark
+from mesh import VoronoiMesh, write_mesh
+from tests.trisk.conftest import Call
+
+CONTRACT = {"cells", "threads", "ns_per_cell_step", "triad_gb_per_s", "bytes_per_cell_step", "plain_twin_ratio"}
+
+
+@pytest.fixture(autouse=True)
+def short_turns(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(swe.benchmark, "ROUNDS", 3)
+    monkeypatch.setattr(swe.benchmark, "SECONDS_PER_TURN", 0.01)
+    monkeypatch.setattr(swe.benchmark, "TRIAD_SIZE", 100_000)
+
+
+def test_json_has_one_object_for_every_size(trisk: Call) -> None:
+    code, out, err = trisk("bench", "--cells", 162, "--cells", 642, "--json")
+    timings = json.loads(out)
+    assert code == 0
+    assert [timing["cells"] for timing in timings] == [162, 642]
+    assert "timing 642 cells" in err
+    for timing in timings:
+        assert set(timing) >= CONTRACT
+        assert timing["threads"] == 1
+        # States alone are 32 bytes a cell, moved twelve times in a step, and a cell's geometry is read four times.
+        assert 12 * 32 + 4 * 200 < timing["bytes_per_cell_step"] < 12 * 32 + 4 * 600
+        assert timing["plain_twin_ratio"] > 1.0
+        assert timing["gb_per_s"] == pytest.approx(timing["bytes_per_cell_step"] / timing["ns_per_cell_step"])
+        assert timing["fraction_of_triad"] == pytest.approx(timing["gb_per_s"] / timing["triad_gb_per_s"])
+
+
+def test_table_of_a_mesh_file(trisk: Call, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    path = tmp_path / "mesh.nc"
+    write_mesh(icosahedral_mesh, path)
+    code, out, err = trisk("bench", "--mesh", path, "-q")
+    assert code == 0
+    assert "642" in out
+    assert "ratio" in out
+    assert err == ""
+
+
+def test_mesh_and_cells_are_refused_together(trisk: Call, tmp_path: Path) -> None:
+    code, _, err = trisk("bench", "--mesh", tmp_path / "mesh.nc", "--cells", 42)
+    assert code == 2
+    assert "either --mesh FILE or --cells N" in err
