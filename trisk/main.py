@@ -18,7 +18,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    rich_markup_mode="rich",
+    rich_markup_mode=None,
 )
 
 app.add_typer(study.app, name="study")
@@ -200,7 +200,10 @@ def plot(
     run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
     quiet: Quiet = False,
 ) -> None:
-    """Draw maps, the mesh and conservation of a run into its folder of figures."""
+    """Draw maps, the mesh and conservation of a run.
+
+    The figures go to the folder of figures of the run.
+    """
     from postprocess.plots import plot_run
     from postprocess.runs import read_run
     from swe.output import FIGURES_FOLDER
@@ -220,7 +223,10 @@ def spectra(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Write and draw spectra of kinetic energy and potential enstrophy against total wavenumber."""
+    """Write and draw spectra of energy and potential enstrophy.
+
+    Of kinetic energy, that is, against total wavenumber.
+    """
     from postprocess.runs import read_run
     from postprocess.spectra import write_spectra_of
 
@@ -276,7 +282,10 @@ def compare(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
-    """Compare runs with a solution of their case or with each other: error norms, conservation and maps."""
+    """Compare runs with a solution or with each other.
+
+    Prints error norms and what was conserved, and draws maps.
+    """
     from postprocess.compare import compare as compare_runs
     from postprocess.compare import comparison_record
     from postprocess.compare_maps import write_maps
@@ -300,13 +309,17 @@ def compare(
 @app.command()
 def bench(
     cells: Annotated[
-        list[int] | None, typer.Option("--cells", help="Number of cells, repeatable; by default 10242 and 40962.")
+        list[int] | None,
+        typer.Option("--cells", metavar="N", help="Number of cells, repeatable; by default 10242 and 40962."),
     ] = None,
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time on this mesh instead.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
 ) -> None:
-    """Time the solver: cost of a step, beside the plain loops and the memory of the machine."""
+    """Time the solver.
+
+    Tells the cost of a step of test case 5, beside plain loops and beside what the memory could do.
+    """
     from trisk.bench import print_timings, timings
 
     results = timings(mesh_file, cells or (), show=not quiet)

@@ -9,7 +9,7 @@ import typer
 
 from trisk.options import CaseName, Quiet, Settings
 
-app = typer.Typer(help="Study how meshes or time steps become errors; a study that was interrupted goes on.")
+app = typer.Typer(help="Study how meshes or time steps become errors. An interrupted study goes on.")
 
 Output = Annotated[Path, typer.Option("--output", "-o", help="Folder of the study, new or begun before.")]
 
@@ -32,7 +32,10 @@ def mesh(
     settings: Settings = None,
     quiet: Quiet = False,
 ) -> None:
-    """Run a case over families and sizes of meshes: quality beside solution error and conservation."""
+    """Run a case over families and sizes of meshes.
+
+    Sets the quality of the meshes beside solution error and conservation.
+    """
     from cases import find_case
     from cases.parameters import split_settings
     from postprocess.families import FAMILIES
@@ -65,7 +68,10 @@ def time(
     settings: Settings = None,
     quiet: Quiet = False,
 ) -> None:
-    """Run a case with several time steps: energy drift and error of the time stepping."""
+    """Run a case with several time steps.
+
+    Tells the energy drift and the error of the time stepping.
+    """
     from cases import find_case
     from cases.parameters import split_settings
     from postprocess.study_report import write_time_report
