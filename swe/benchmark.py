@@ -52,13 +52,13 @@ def measure(model: ShallowWaterModel, state: State, time_step: float) -> Timing:
     fast, slow = state.copy(), state.copy()
     a, b, c = (np.ones(TRIAD_SIZE) for _ in range(3))
     with worthwhile_threads(cells) as threads:
-        once = [_seconds(lambda: fused.step(fast, time_step), 1) for _ in range(3)]
+        once = [_seconds(lambda: fused.advance(fast, time_step), 1) for _ in range(3)]
         plain.step(slow, time_step)
         _triad(a, b, c, 3.0)
         repeats = max(1, round(SECONDS_PER_TURN / min(once)))
         turns = np.empty((ROUNDS, 3))
         for turn in turns:
-            turn[0] = _seconds(lambda: fused.step(fast, time_step), repeats)
+            turn[0] = _seconds(lambda: fused.advance(fast, time_step, repeats), 1) / repeats
             turn[1] = _seconds(lambda: plain.step(slow, time_step), max(1, repeats // 2))
             turn[2] = _seconds(lambda: _triad(a, b, c, 3.0), 1)
     nanoseconds, plain_nanoseconds, _ = 1e9 * np.median(turns, axis=0) / cells
@@ -77,7 +77,7 @@ def measure(model: ShallowWaterModel, state: State, time_step: float) -> Timing:
     )
 
 
-def _seconds(work: Callable[[], None], repeats: int) -> float:
+def _seconds(work: Callable[[], object], repeats: int) -> float:
     """Seconds that `work` takes, the mean of `repeats`."""
     begin = time.perf_counter()
     for _ in range(repeats):

@@ -6,7 +6,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from swe.model import ShallowWaterModel
 from swe.state import State
-from swe.tile_kernels import MIRROR, rk4_step
+from swe.tile_kernels import MIRROR, rk4_steps
 from swe.tiles import Tiles, build_tiles
 
 
@@ -40,16 +40,23 @@ class FusedRungeKutta:
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
-    def step(self, state: State, time_step: float) -> None:
-        """Advance `state` by `time_step` seconds."""
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+        """Advance `state` by `steps` steps of `time_step` seconds; gives how many, fewer where one went wrong.
+
+        That is where `unsound` is not zero.
+        """
         tiles, model = self.tiles, self.model
         h, u = _in_order(state.thickness, tiles.cell_order), _in_order(state.normal_velocity, tiles.edge_order)
         moving = not model.prescribed_wind
-        rk4_step(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages, time_step, self._unsound)
+        done = rk4_steps(
+            *(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages),
+            *(time_step, steps, self._unsound),
+        )
         if tiles.cell_order is not None:
             state.thickness[tiles.cell_order] = h
         if tiles.edge_order is not None:
             state.normal_velocity[tiles.edge_order] = u
+        return int(done)
 
 
 def _in_order(values: Array, order: Index | None) -> Array:

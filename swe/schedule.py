@@ -35,6 +35,18 @@ def step_towards(time: float, event: float, time_step: float) -> tuple[float, fl
     return time_step, time + time_step
 
 
+def steps_towards(time: float, event: float, time_step: float, most: int) -> tuple[float, list[float]]:
+    """Length of the next steps and the times after each: as many of one length as there are, up to `most`."""
+    step, following = step_towards(time, event, time_step)
+    times = [following]
+    while len(times) < most and times[-1] < event:
+        next_step, following = step_towards(times[-1], event, time_step)
+        if next_step != step:
+            break
+        times.append(following)
+    return step, times
+
+
 def dividing_step(limit: float, interval: float) -> float:
     """The largest time step not above `limit` that divides `interval`, seconds."""
     return float(interval / np.ceil(interval / limit * (1.0 - ROUNDING)))

@@ -31,12 +31,15 @@ from swe.output import (
     write_record,
 )
 from swe.progress import ProgressBar
-from swe.schedule import Schedule, dividing_step, step_towards
+from swe.schedule import Schedule, dividing_step, steps_towards
 from swe.state import State
 from swe.threads import worthwhile_threads
 
 DEFAULT_COURANT_NUMBER = 0.8
 """Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+
+CELL_STEPS_PER_CALL = 400_000
+"""Cells times steps between two looks at the keyboard and the bar of progress: some twentieth of a second."""
 
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
@@ -193,16 +196,16 @@ class Simulation:
 
     def _advance_to(self, event: float, bar: ProgressBar) -> None:
         """Step until `event`, seconds, is reached exactly."""
+        most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
         while self.time < event:
-            step, following = step_towards(self.time, event, self.configuration.time_step)
-            self._stepper.step(self.state, step)
-            self.time = following
-            self.steps += 1
+            step, times = steps_towards(self.time, event, self.configuration.time_step, most)
+            done = self._stepper.advance(self.state, step, len(times))
+            self.time = times[done - 1]
+            self.steps += done
             if self._stepper.unsound:
                 raise RunError(
                     f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
-                    f"the Courant number "
-                    f"was {self.initial_courant_number:.2f} at the start: where that is above "
+                    f"the Courant number was {self.initial_courant_number:.2f} at the start: where that is above "
                     f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
                 )
             bar.update(self.time / SECONDS_PER_DAY)

@@ -348,7 +348,7 @@ def _stage(
 
 
 @numba.njit(cache=True, **options)
-def rk4_step(
+def rk4_steps(
     tiles: TileArrays,
     scratch: Arrays,
     gravity: float,
@@ -358,16 +358,22 @@ def rk4_step(
     third: Arrays,
     fourth: Arrays,
     time_step: float,
+    count: int,
     unsound: Index,
-) -> None:
-    """Advance y, a pair of thickness and normal velocity in the order of the tiles, by classical RK4.
+) -> int:
+    """Advance y, a pair of thickness and normal velocity in the order of the tiles, by steps of classical RK4.
 
-    `second`, `third` and `fourth` are left with the states at which the stages after the first take their slopes.
-    `unsound` (n_tiles,) counts the thicknesses that are not positive and the values that are not finite. Where not
-    `moving`, the velocity stays as it is.
+    Gives the number of steps taken: `count`, or less where a step left unsound values, thicknesses that are not
+    positive or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
+    `fourth` are left with the states at which the stages after the first took their slopes. Where not `moving`, the
+    velocity stays as it is.
     """
     dt = time_step
-    _stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
-    _stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
-    _stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
-    _stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
+    for step in range(count):
+        _stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
+        _stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
+        _stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
+        _stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
+        if np.any(unsound > 0):
+            return step + 1
+    return count

@@ -35,8 +35,8 @@ def increments(model: ShallowWaterModel, state: State, steps: int = 3) -> tuple[
     fused, plain = state.copy(), state.copy()
     fast, slow = FusedRungeKutta(model), RungeKutta(model.tendency, plain)
     for _ in range(steps):
-        fast.step(fused, TIME_STEP)
         slow.step(plain, TIME_STEP)
+    assert fast.advance(fused, TIME_STEP, steps) == steps
     assert fast.unsound == 0
     return difference(fused, state), difference(plain, state)
 
@@ -115,8 +115,7 @@ def test_results_do_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch:
         numba.set_num_threads(threads)
         try:
             state, stepper = start.copy(), FusedRungeKutta(model)
-            for _ in range(5):
-                stepper.step(state, TIME_STEP)
+            stepper.advance(state, TIME_STEP, 5)
         finally:
             numba.set_num_threads(available)
         results.append(state)
@@ -137,14 +136,24 @@ def test_a_prescribed_wind_stays(any_mesh: VoronoiMesh) -> None:
 def test_unsound_values_are_counted(icosahedral_mesh: VoronoiMesh) -> None:
     model, state = random_model(icosahedral_mesh)
     stepper = FusedRungeKutta(model)
-    stepper.step(state, TIME_STEP)
+    assert stepper.advance(state, TIME_STEP, 4) == 4
     assert stepper.unsound == 0
     state.thickness[7] = -5000.0
-    stepper.step(state, TIME_STEP)
+    assert stepper.advance(state, TIME_STEP, 4) == 1
     assert stepper.unsound >= 1
     state.normal_velocity[3] = np.nan
-    stepper.step(state, TIME_STEP)
+    assert stepper.advance(state, TIME_STEP, 4) == 1
     assert stepper.unsound > 1
+
+
+def test_steps_at_once_equal_steps_one_by_one(icosahedral_mesh: VoronoiMesh) -> None:
+    model, start = random_model(icosahedral_mesh)
+    stepper, together, singly = FusedRungeKutta(model), start.copy(), start.copy()
+    stepper.advance(together, TIME_STEP, 3)
+    for _ in range(3):
+        stepper.advance(singly, TIME_STEP)
+    assert np.array_equal(together.thickness, singly.thickness)
+    assert np.array_equal(together.normal_velocity, singly.normal_velocity)
 
 
 def test_every_edge_is_owned_once_and_tiles_fit_their_indices(any_mesh: VoronoiMesh) -> None:

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from swe.schedule import Schedule, dividing_step, step_towards
+from swe.schedule import Schedule, dividing_step, step_towards, steps_towards
 
 
 def test_events_are_multiples_and_the_end() -> None:
@@ -34,3 +34,17 @@ def test_steps_land_exactly_on_events(step: float, interval: float) -> None:
         count += 1
     assert time == interval
     assert count <= interval / step + 2
+
+
+@given(step=st.floats(1.0, 1000.0), interval=st.floats(1.0, 5000.0), most=st.integers(1, 7))
+def test_many_steps_at_once_are_those_taken_singly(step: float, interval: float, most: int) -> None:
+    singly, time = [], 0.0
+    while time < interval:
+        length, time = step_towards(time, interval, step)
+        singly.append((length, time))
+    together: list[tuple[float, float]] = []
+    while not together or together[-1][1] < interval:
+        length, times = steps_towards(together[-1][1] if together else 0.0, interval, step, most)
+        assert 1 <= len(times) <= most
+        together += [(length, time) for time in times]
+    assert together == singly
