@@ -11,6 +11,9 @@ WORD = 32
 LOWEST_EXPONENT = -1074
 """Of the last bit of the smallest double."""
 
+PARTS = 16
+"""Parts of the values that threads may take."""
+
 WORDS = (1024 - LOWEST_EXPONENT) // WORD + 2
 
 
@@ -20,29 +23,35 @@ def exact_sum(values: Array) -> float:
     Every value is an integer times a power of two, and is added as such to a long integer of `WORDS` words.
     """
     total = 0
-    for word in reversed(_words(np.ascontiguousarray(values).view(np.int64)).tolist()):
+    for word in reversed(_words(np.ascontiguousarray(values).view(np.int64)).sum(axis=0).tolist()):
         total = (total << WORD) + word
     if not np.isfinite(values).all():
         return float(values.sum())
     return total / (1 << -LOWEST_EXPONENT)
 
 
-@numba.njit(cache=True)
+@numba.njit(cache=True, parallel=True)
 def _words(bits: Index) -> Index:
-    """Words of the sum of doubles given by their bits, the lowest first; carries stay in the words."""
-    words = np.zeros(WORDS, np.int64)
-    for i in range(bits.size):
-        exponent = (bits[i] >> 52) & 0x7FF
-        mantissa = bits[i] & 0xFFFFFFFFFFFFF
-        if exponent > 0:
-            mantissa |= 1 << 52
-            exponent -= 1
-        word, shift = exponent // WORD, exponent % WORD
-        # The mantissa shifted by up to 31 bits covers three words; its halves of 32 and 21 bits stay below 2^63.
-        low = (mantissa & 0xFFFFFFFF) << shift
-        high = (mantissa >> WORD) << shift
-        parts = (low & 0xFFFFFFFF, (low >> WORD) + (high & 0xFFFFFFFF), high >> WORD)
-        sign = -1 if bits[i] < 0 else 1
-        for part in range(3):
-            words[word + part] += sign * parts[part]
+    """Words (PARTS, WORDS) of the sums of parts of doubles given by their bits, the lowest first, with carries."""
+    words = np.zeros((PARTS, WORDS), np.int64)
+    for part in numba.prange(PARTS):
+        for i in range(part * bits.size // PARTS, (part + 1) * bits.size // PARTS):
+            _add(bits[i], words[part])
     return words
+
+
+@numba.njit(cache=True)
+def _add(bits: int, words: Index) -> None:
+    exponent = (bits >> 52) & 0x7FF
+    mantissa = bits & 0xFFFFFFFFFFFFF
+    if exponent > 0:
+        mantissa |= 1 << 52
+        exponent -= 1
+    word, shift = exponent // WORD, exponent % WORD
+    sign = -1 if bits < 0 else 1
+    # Shifted by up to 31 bits the mantissa covers three words; its lower 32 bits and its upper 21 stay below 2^63.
+    low = (mantissa & 0xFFFFFFFF) << shift
+    high = (mantissa >> WORD) << shift
+    words[word] += sign * (low & 0xFFFFFFFF)
+    words[word + 1] += sign * ((low >> WORD) + (high & 0xFFFFFFFF))
+    words[word + 2] += sign * (high >> WORD)

@@ -8,6 +8,7 @@ from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
 from swe import kernels
 from swe.errors import SetupError
+from swe.exact_sum import exact_sum
 from swe.state import State
 
 
@@ -36,6 +37,11 @@ class ShallowWaterModel:
     prescribed_wind
         Whether the velocity stays as it is, so that thickness is advected and there are no gravity waves.
 
+    Attributes
+    ----------
+    area, planetary_vorticity_magnitude
+        Area of the sphere, m2, and integral of the magnitude of the Coriolis parameter, m2/s.
+
     Raises
     ------
     SetupError
@@ -52,6 +58,8 @@ class ShallowWaterModel:
         self.coriolis = coriolis
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
+        self.area = exact_sum(mesh.area_cell)
+        self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
         self._sign_on_cell = kernels.edge_signs_on_cell(mesh)
         self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
         self._thickness_flux = np.empty(mesh.n_edges)

@@ -3,7 +3,6 @@
 import json
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import asdict
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -18,7 +17,7 @@ from mesh.operators import velocity_at_cells
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import RunError
 from swe.invariants import Changes, Invariants
-from swe.model import ShallowWaterModel
+from swe.model import Diagnosis, ShallowWaterModel
 from swe.state import State
 
 HISTORY_FILE = "history.nc"
@@ -111,11 +110,11 @@ class _TimeFile:
 class HistoryFile(_TimeFile):
     """Snapshots, appended one by one."""
 
-    def append(self, time: float, model: ShallowWaterModel, state: State) -> None:
-        """Write the snapshot of `state` at `time`, seconds since the start."""
+    def append(self, time: float, model: ShallowWaterModel, state: State, diagnosis: Diagnosis) -> None:
+        """Write the snapshot of `state` and of what follows from it at `time`, seconds since the start."""
         zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
         values = {
-            **asdict(model.diagnose(state)),
+            **vars(diagnosis),
             "thickness": state.thickness,
             "surface_height": state.thickness + model.topography,
             "normal_velocity": state.normal_velocity,

@@ -151,7 +151,7 @@ class Simulation:
         _require_positive("the time step", time_step)
         self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
         self.initial_courant_number = self.model.courant_number(self.state, time_step)
-        self.initial_invariants = measure_invariants(self.model, self.state)
+        self.initial_invariants = self.invariants
         self._stepper = FusedRungeKutta(self.model)
         self._directory = None if output is None else Path(output)
         if self._directory is not None:
@@ -166,7 +166,7 @@ class Simulation:
     @property
     def invariants(self) -> Invariants:
         """Invariants of the present state."""
-        return measure_invariants(self.model, self.state)
+        return measure_invariants(self.model, self.state, self.model.diagnose(self.state))
 
     def run(self, days: float, progress: bool = True) -> None:
         """Integrate to `days` after the start, writing output on the way.
@@ -261,17 +261,20 @@ class _Recorder:
     def record(self, snapshot: bool, diagnostics: bool) -> None:
         """Write the present state to the files that are due."""
         simulation = self.simulation
-        if self.history is not None and snapshot:
-            self.history.append(simulation.time, simulation.model, simulation.state)
-        if self.diagnostics is not None and diagnostics:
-            invariants = simulation.invariants
-            kinetic_energy = simulation.model.diagnose(simulation.state).kinetic_energy
+        if self.history is None or self.diagnostics is None or not (snapshot or diagnostics):
+            return
+        model, state = simulation.model, simulation.state
+        diagnosis = model.diagnose(state)
+        if snapshot:
+            self.history.append(simulation.time, model, state, diagnosis)
+        if diagnostics:
+            invariants = measure_invariants(model, state, diagnosis)
             self.diagnostics.append(
                 simulation.time,
                 invariants,
                 relative_changes(simulation.initial_invariants, invariants),
-                simulation.model.courant_number(simulation.state, simulation.configuration.time_step),
-                float(np.sqrt(2.0 * kinetic_energy.max())),
+                model.courant_number(state, simulation.configuration.time_step),
+                float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
             )
 
     def end(self, status: str, reason: str = "") -> None:
