@@ -4,10 +4,11 @@ Connectivity is checked exactly; metrics and identities yield residuals, relativ
 stay below a tolerance. Errors name the first entities that offend, counted from 0.
 """
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, sum_by_index
+from mesh.arrays import Array, Index, sum_by_index
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.errors import MeshError
 from mesh.metrics import compute_metrics, edge_angles
@@ -313,15 +314,25 @@ def identity_residuals(mesh: VoronoiMesh) -> dict[str, float]:
 
 def _weight_asymmetry(mesh: VoronoiMesh) -> float:
     """Largest |w_ee' + w_e'e| l_e l_e' / (d_e d_e'), with w_ee' = weights_on_edge d_e / l_e'."""
-    edge = np.arange(mesh.n_edges)
+    return float(
+        _largest_asymmetry(mesh.n_edges_on_edge, mesh.edges_on_edge, mesh.weights_on_edge, mesh.dv_edge, mesh.dc_edge)
+    )
+
+
+@numba.njit(cache=True, parallel=True)
+def _largest_asymmetry(
+    n_edges_on_edge: Index, edges_on_edge: Index, weights: Array, dv_edge: Array, dc_edge: Array
+) -> float:
     worst = 0.0
-    work = mesh.weights_on_edge * mesh.dv_edge[:, None]
-    for k in range(mesh.edges_on_edge.shape[1]):
-        used = np.flatnonzero(k < mesh.n_edges_on_edge)
-        other = mesh.edges_on_edge[used, k]
-        back = np.where(mesh.edges_on_edge[other] == edge[used, None], work[other], 0.0).sum(axis=1)
-        defect = work[used, k] / mesh.dc_edge[other] + back / mesh.dc_edge[used]
-        worst = max(worst, float(np.abs(defect).max(initial=0.0)))
+    for e in numba.prange(len(n_edges_on_edge)):
+        for k in range(n_edges_on_edge[e]):
+            other = edges_on_edge[e, k]
+            back = 0.0
+            for m in range(n_edges_on_edge[other]):
+                if edges_on_edge[other, m] == e:
+                    back += weights[other, m]
+            defect = weights[e, k] * dv_edge[e] / dc_edge[other] + back * dv_edge[other] / dc_edge[e]
+            worst = max(worst, abs(defect))
     return worst
 
 

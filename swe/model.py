@@ -1,6 +1,7 @@
 """The equations on one mesh: everything that the tendency and the diagnostics need, apart from any clock."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -60,13 +61,24 @@ class ShallowWaterModel:
         self.prescribed_wind = prescribed_wind
         self.area = exact_sum(mesh.area_cell)
         self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
-        self._sign_on_cell = kernels.edge_signs_on_cell(mesh)
         self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
-        self._thickness_flux = np.empty(mesh.n_edges)
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
-        self._potential_vorticity_edge = np.empty(mesh.n_edges)
         self._kinetic_energy = np.empty(mesh.n_cells)
+
+    # The plain tendency alone needs these; a run takes the fused path and keeps their memory.
+
+    @cached_property
+    def _sign_on_cell(self) -> Array:
+        return kernels.edge_signs_on_cell(self.mesh)
+
+    @cached_property
+    def _thickness_flux(self) -> Array:
+        return np.empty(self.mesh.n_edges)
+
+    @cached_property
+    def _potential_vorticity_edge(self) -> Array:
+        return np.empty(self.mesh.n_edges)
 
     def tendency(self, state: State, result: State) -> None:
         """Write the time derivative of `state` into `result`; allocates nothing."""

@@ -159,8 +159,8 @@ class _Cutter:
         edges.add(own_edges)
         cells.add(mesh.cells_on_edge[own_edges])
         computed = cells.known()
-        inside = mesh.on_ring[computed]
         sides = mesh.n_edges_on_cell[computed]
+        inside = np.arange(mesh.max_edges) < sides[:, None]
         vertices.add(mesh.vertices_on_cell[computed][inside])
         round_vertices = vertices.known()
         edges.add(mesh.edges_on_vertex[round_vertices])
