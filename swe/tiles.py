@@ -24,7 +24,7 @@ from swe.kernels import edge_signs_on_cell, edge_signs_on_vertex
 from swe.tile_kernels import MIRROR, RING, TileArrays
 
 CELLS_PER_TILE = 2560
-"""Scratch of some 300 kB stays in the second cache, and a tile repeats less than a fifth of its neighbours' work."""
+"""Half a megabyte of scratch stays in the second cache, and a tile repeats a tenth of its neighbours' work."""
 
 DISORDER = 1.5
 """A mesh keeps its own numbering unless it parts this many times more neighbours between tiles than a curve does."""
