@@ -47,11 +47,11 @@ def _add(bits: int, words: Index) -> None:
     if exponent > 0:
         mantissa |= 1 << 52
         exponent -= 1
-    word, shift = exponent // WORD, exponent % WORD
+    word, shift = np.uint64(exponent >> 5), exponent & 31  # division by WORD, and what it leaves
     sign = -1 if bits < 0 else 1
     # Shifted by up to 31 bits the mantissa covers three words; its lower 32 bits and its upper 21 stay below 2^63.
     low = (mantissa & 0xFFFFFFFF) << shift
     high = (mantissa >> WORD) << shift
     words[word] += sign * (low & 0xFFFFFFFF)
-    words[word + 1] += sign * ((low >> WORD) + (high & 0xFFFFFFFF))
-    words[word + 2] += sign * (high >> WORD)
+    words[word + np.uint64(1)] += sign * ((low >> WORD) + (high & 0xFFFFFFFF))
+    words[word + np.uint64(2)] += sign * (high >> WORD)

@@ -90,6 +90,8 @@ class _TimeFile:
     def __init__(self, path: Path) -> None:
         self._path = path
         self._file = netCDF4.Dataset(path, "r+")
+        # Values are written as they are; looking for masks and scales takes as long as writing them.
+        self._file.set_auto_maskandscale(False)
 
     def _append(self, time: float, values: Mapping[str, Array | float]) -> None:
         try:
