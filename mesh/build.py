@@ -51,7 +51,7 @@ def mesh_from_points(
         sphere_radius=1.0,
         density_name=density_name,
     )
-    validate_mesh(mesh, exact=metrics)
+    validate_mesh(mesh, fresh_metrics=True)
     return mesh
 
 

@@ -26,19 +26,18 @@ between metrics and what the generators give: rounding of coordinates is magnifi
 MINIMUM_RING = 3
 
 
-def validate_mesh(
-    mesh: VoronoiMesh, tolerance: float = OWN_TOLERANCE, exact: Metrics | None = None
-) -> dict[str, float]:
+def validate_mesh(mesh: VoronoiMesh, tolerance: float = OWN_TOLERANCE, fresh_metrics: bool = False) -> dict[str, float]:
     """Check everything; return the residuals of the discrete identities by name.
 
-    `tolerance` bounds those residuals. `exact` are the metrics of the generators on the unit sphere, where the caller
-    has computed them already. Raises `MeshError`, one sentence that names entities and values, at the first
-    thing that fails.
+    `tolerance` bounds those residuals. With `fresh_metrics`, the caller has just computed the metrics from the
+    generators, and they are not computed again to be compared. Raises `MeshError`, one sentence that names entities
+    and values, at the first thing that fails.
     """
     validate_topology(mesh)
     _check_positions(mesh)
     _check_orientation(mesh)
-    _check_metrics(mesh, compute_metrics(normalize(mesh.cell_points), mesh) if exact is None else exact)
+    if not fresh_metrics:
+        _check_metrics(mesh)
     residuals = identity_residuals(mesh)
     for name, residual in residuals.items():
         if not residual <= tolerance:
@@ -232,14 +231,15 @@ def _check_orientation(mesh: VoronoiMesh) -> None:
     _require((turns > 0.0) | ~inside, "cells", "edgesOnCell does not run counter-clockwise")
 
 
-def _check_metrics(mesh: VoronoiMesh, exact: Metrics) -> None:
-    """The metrics of `mesh` are `exact`, those of its generators, up to `OUTSIDE_TOLERANCE` of the local size.
+def _check_metrics(mesh: VoronoiMesh) -> None:
+    """The metrics of `mesh` are those of its generators, up to `OUTSIDE_TOLERANCE` of the local size.
 
     The local size of a vertex is its distance to the cells; that of an edge is the largest of its own and its
     vertices'.
     """
     radius = mesh.sphere_radius
     points = normalize(mesh.cell_points)
+    exact = compute_metrics(points, mesh)
     normal = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
     vertex = np.stack([exact.x_vertex, exact.y_vertex, exact.z_vertex], axis=1)
     spoke = vertex - points[mesh.cells_on_vertex[:, 0]]

@@ -13,7 +13,8 @@ from swe.tiles import Tiles, build_tiles
 class FusedRungeKutta:
     """Advances a state by classical RK4; computes what `RungeKutta(model.tendency, state)` does, to round-off.
 
-    `unsound` counts, after a step, the thicknesses that are not positive and the values that are not finite.
+    The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files of others equal up to
+    their noise. Topography and Coriolis parameter are taken from the model once, here.
     """
 
     def __init__(self, model: ShallowWaterModel) -> None:
@@ -23,40 +24,50 @@ class FusedRungeKutta:
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(3)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
+        self._taken = np.zeros(1, np.int64)
+
+    @property
+    def taken(self) -> int:
+        """Number of steps that the last call of `advance` took."""
+        return int(self._taken[0])
 
     @property
     def unsound(self) -> int:
-        """Number of values of the last step's result that no sound state has."""
+        """Number of thicknesses that are not positive and of values that are not finite after the last step."""
         return int(self._unsound.sum())
 
     @property
     def bytes_per_step(self) -> int:
         """What a step must move, every array counted once for each stage that reads or writes it.
 
-        The tiles are read in all four stages. States are read and written 2, 3, 3 and 4 times: each stage reads that at
-        which it takes its slope and, after the first, the one at the start; the last reads those of all stages.
+        The tiles are read in all four stages. A stage needs 2, 3, 3 and 4 states: that at which it takes its slope,
+        after the first also that at the start, and that which it writes; the last writes over the one at the start.
         """
         tiles = sum(array.nbytes for array in self.tiles.arrays)
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
     def advance(self, state: State, time_step: float, steps: int = 1) -> int:
-        """Advance `state` by `steps` steps of `time_step` seconds; gives how many, fewer where one went wrong.
+        """Advance `state` in place by `steps` steps of `time_step` seconds; gives how many, as `taken` does.
 
-        That is where `unsound` is not zero.
+        There are fewer where a step left `unsound` values. Where Ctrl-C comes in the middle, all steps are taken before
+        it is raised, and the state and `taken` tell so.
         """
         tiles, model = self.tiles, self.model
         h, u = _in_order(state.thickness, tiles.cell_order), _in_order(state.normal_velocity, tiles.edge_order)
         moving = not model.prescribed_wind
-        done = rk4_steps(
-            *(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages),
-            *(time_step, steps, self._unsound),
-        )
-        if tiles.cell_order is not None:
-            state.thickness[tiles.cell_order] = h
-        if tiles.edge_order is not None:
-            state.normal_velocity[tiles.edge_order] = u
-        return int(done)
+        self._taken[0] = 0
+        try:
+            rk4_steps(
+                *(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages),
+                *(time_step, steps, self._taken, self._unsound),
+            )
+        finally:
+            if tiles.cell_order is not None:
+                state.thickness[tiles.cell_order] = h
+            if tiles.edge_order is not None:
+                state.normal_velocity[tiles.edge_order] = u
+        return self.taken
 
 
 def _in_order(values: Array, order: Index | None) -> Array:

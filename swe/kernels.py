@@ -1,8 +1,9 @@
 """Compiled loops of the scheme, one per operator: each entity gathers from its own neighbours, in file order.
 
-No two threads write to one place, so results do not depend on the number of threads. Nothing is allocated:
-every kernel writes into the array that it is given last. `h`, `u`, `q`, ... are named as in the equations of
-DESIGN and Ringler et al. (2010); the letters are thickness, normal velocity and potential vorticity.
+The plain twin of `swe.tile_kernels`, and what diagnostics are computed by. No two threads write to one place, so
+results do not depend on the number of threads. Nothing is allocated: every kernel but `largest_rate` writes into the
+array that it is given last. `h`, `u`, `q`, ... are named as in the equations of DESIGN and Ringler et al. (2010); the letters are
+thickness, normal velocity and potential vorticity.
 """
 
 import numba

@@ -66,7 +66,7 @@ class ShallowWaterModel:
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
 
-    # The plain tendency alone needs these; a run takes the fused path and keeps their memory.
+    # The plain tendency alone needs these; a run takes the fused path and saves their memory.
 
     @cached_property
     def _sign_on_cell(self) -> Array:
@@ -81,7 +81,7 @@ class ShallowWaterModel:
         return np.empty(self.mesh.n_edges)
 
     def tendency(self, state: State, result: State) -> None:
-        """Write the time derivative of `state` into `result`; allocates nothing."""
+        """Write the time derivative of `state` into `result`; allocates nothing after the first time."""
         self._update_thickness_tendency(state, result)
         if self.prescribed_wind:
             result.normal_velocity.fill(0.0)
@@ -139,6 +139,8 @@ class ShallowWaterModel:
         frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
         which has no waves, it is the largest |u| dt / d.
         """
+        if not np.isfinite(state.normal_velocity).all():
+            return float("nan")
         mesh, waves = self.mesh, not self.prescribed_wind
         return time_step * kernels.largest_rate(
             state.thickness, state.normal_velocity, self.gravity, waves, mesh.cells_on_edge, mesh.dc_edge

@@ -152,10 +152,10 @@ class Simulation:
         self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
         self.initial_courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = self.invariants
-        self._stepper = FusedRungeKutta(self.model)
         self._directory = None if output is None else Path(output)
         if self._directory is not None:
             _check_directory(self._directory, overwrite)
+        self.stepper = FusedRungeKutta(self.model)
 
     def _default_time_step(self, interval: float) -> float:
         """Largest step up to the default Courant number that divides `interval`."""
@@ -199,10 +199,12 @@ class Simulation:
         most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
         while self.time < event:
             step, times = steps_towards(self.time, event, self.configuration.time_step, most)
-            done = self._stepper.advance(self.state, step, len(times))
-            self.time = times[done - 1]
-            self.steps += done
-            if self._stepper.unsound:
+            try:
+                self.stepper.advance(self.state, step, len(times))
+            finally:
+                self.time = [self.time, *times][self.stepper.taken]
+                self.steps += self.stepper.taken
+            if self.stepper.unsound:
                 raise RunError(
                     f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
                     f"the Courant number was {self.initial_courant_number:.2f} at the start: where that is above "

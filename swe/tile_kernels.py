@@ -5,7 +5,7 @@ repeats what it needs from its neighbours (`swe.tiles` says what that is and how
 contributions of cells to edges never leave the cache, tiles of one stage are independent, and which thread takes
 which tile changes nothing.
 
-The equations are those of DESIGN, section 4, with three changes of form. Edges carry the circulation U_e = d_e u_e,
+The equations are those of `swe.tendency`, with three changes of form. Edges carry the circulation U_e = d_e u_e,
 with -U_e mirrored `MIRROR` places on, so that an index picks the sign too. The Coriolis flux is summed by cells in its
 prefix form, O(n) for n sides. Each cell adds its Bernoulli function to what it gives its edges, since
 d_e du_e/dt = (Q + B) of the first cell - (Q + B) of the second.
@@ -183,7 +183,7 @@ def _tendency_of_tile(
     """The tendency of the tile's own cells and edges at the state h, u, in the scratch of `thread`."""
     first_cell, first_edge, halo, halo_parts, indices, index_parts, metrics, metric_parts = tiles
     h_rows, U_rows, q_rows, S_rows, dh_rows, du_rows = scratch
-    a, b, c = halo_parts[tile], index_parts[tile], metric_parts[tile]
+    a, b, c = halo_parts[tile], index_parts[tile], metric_parts[tile]  # where the parts begin
     halo_cells, halo_edges = halo[a[0] : a[1]], halo[a[1] : a[2]]
     slots = indices[b[0] : b[1]]
     edges_on_vertex, cells_on_vertex = indices[b[1] : b[2]], indices[b[2] : b[3]]
@@ -292,13 +292,13 @@ def _stage_of_tile(
 def _use_widest_vectors(_typing_context: Any) -> Any:
     """Let the loop that calls this use vectors of 512 bits where the processor has them.
 
-    The compiler prefers 256 bits even there, to spare the clock of older processors, at a seventh of the speed.
+    The compiler prefers 256 bits even there, to spare the clock of older processors, and is a seventh slower.
     The attribute is not among those that llvmlite knows by name, so it is added to the set beneath; where that ceases
     to work, the loop is as fast as without.
     """
 
     def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        with suppress(TypeError):
+        with suppress(AttributeError, TypeError):
             set.add(builder.function.attributes, '"prefer-vector-width"="512"')
         return context.get_dummy_value()
 
@@ -359,21 +359,22 @@ def rk4_steps(
     fourth: Arrays,
     time_step: float,
     count: int,
+    taken: Index,
     unsound: Index,
-) -> int:
+) -> None:
     """Advance y, a pair of thickness and normal velocity in the order of the tiles, by steps of classical RK4.
 
-    Gives the number of steps taken: `count`, or less where a step left unsound values, thicknesses that are not
-    positive or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
+    `taken` (1,) counts the steps: `count`, or less where a step left unsound values, thicknesses that are not positive
+    or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
     `fourth` are left with the states at which the stages after the first took their slopes. Where not `moving`, the
     velocity stays as it is.
     """
     dt = time_step
-    for step in range(count):
+    for _ in range(count):
         _stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
         _stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
         _stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
         _stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
+        taken[0] += 1
         if np.any(unsound > 0):
-            return step + 1
-    return count
+            return

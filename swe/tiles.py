@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index
 from mesh.ordering import hilbert_order
 from mesh.voronoi_mesh import VoronoiMesh
+from swe.errors import SetupError
 from swe.kernels import edge_signs_on_cell, edge_signs_on_vertex
 from swe.tile_kernels import MIRROR, RING, TileArrays
 
@@ -38,7 +39,7 @@ class Tiles:
     order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are the tiles' places in it. `halo` holds the places
     of the cells and the edges that a tile reads from others; `indices` and `metrics` the tile's local indices and its
     geometry with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) are the places where the parts
-    begin, and where the last one ends.
+    begin, and where the last one ends; `_Cutter.cut` gives their order. `most` are the largest numbers of entities.
     """
 
     cell_order: Index | None
@@ -88,7 +89,11 @@ class LocalSizes:
 def build_tiles(
     mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cells_per_tile: int = CELLS_PER_TILE
 ) -> Tiles:
-    """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them."""
+    """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them.
+
+    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `SetupError` where the
+    surroundings of a single cell do not fit.
+    """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
     cell_order = _cell_order(mesh, first_cell)
@@ -105,6 +110,8 @@ def build_tiles(
     ]
     most = LocalSizes(*np.max([list(piece.sizes) for piece in pieces], axis=0).tolist())
     if most.edges > MIRROR:
+        if cells_per_tile == 1:
+            raise SetupError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
         return build_tiles(mesh, topography, coriolis, gravity, cells_per_tile // 2)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
@@ -200,7 +207,7 @@ class _Cutter:
                 len(edges.known()),
                 len(own_edges),
                 len(round_vertices),
-                int(slots.max()) + 1,
+                RING * len(computed) + int(sides[larger].sum()),
             ),
         )
         for numbers in (cells, edges, vertices):

@@ -27,8 +27,7 @@ def timings(mesh_file: Path | None, cells: Sequence[int], show: bool) -> list[Ti
     for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS):
         if show:
             typer.echo(f"timing {mesh.n_cells} cells", err=True)
-        simulation = Simulation(mesh, find_case(CASE))
-        results.append(measure(simulation.model, simulation.state, simulation.configuration.time_step))
+        results.append(measure(Simulation(mesh, find_case(CASE))))
     return results
 
 

@@ -1,15 +1,18 @@
 """The fused step does what the plain one does, on every family of meshes, in any numbering, with any threads."""
 
 import dataclasses
+import signal
 
 import numba
 import numpy as np
 import pytest
 
-from mesh import VoronoiMesh, mesh_from_points
-from swe import ShallowWaterModel, State
+from cases import Williamson5
+from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
+from swe import ShallowWaterModel, Simulation, State, tiles
+from swe.errors import SetupError
 from swe.fused import FusedRungeKutta
-from swe.tile_kernels import MIRROR, RING
+from swe.tile_kernels import RING
 from swe.tiles import build_tiles
 from swe.time_stepping import RungeKutta
 
@@ -80,9 +83,9 @@ def test_a_mesh_in_any_numbering_gives_the_same(larger_mesh: VoronoiMesh, monkey
     monkeypatch.setattr(build_tiles, "__defaults__", (300,))
     # As in files of others: edges in another order than that of their lower cells.
     model, state = random_model(_with_cells_shuffled(mesh))
-    tiles = FusedRungeKutta(model).tiles
-    assert tiles.cell_order is not None
-    assert tiles.edge_order is not None
+    own_order = FusedRungeKutta(model).tiles
+    assert own_order.cell_order is not None
+    assert own_order.edge_order is not None
     assert_equal_to_round_off(model, state)
 
 
@@ -156,11 +159,61 @@ def test_steps_at_once_equal_steps_one_by_one(icosahedral_mesh: VoronoiMesh) -> 
     assert np.array_equal(together.normal_velocity, singly.normal_velocity)
 
 
-def test_every_edge_is_owned_once_and_tiles_fit_their_indices(any_mesh: VoronoiMesh) -> None:
+def test_a_step_on_a_mesh_of_pentagons_alone_stays_within_its_scratch() -> None:
+    """Rings of five are filled up to six sides, and the scratch must have room for the sixth."""
+    mesh = scvt_mesh(12)
+    assert mesh.max_edges == 5
+    model, state = random_model(mesh)
+    most = FusedRungeKutta(model).tiles.most
+    assert most.sides >= RING * most.computed_cells
+    assert_equal_to_round_off(model, state)
+
+
+def test_every_edge_is_owned_by_the_tile_of_its_lower_cell(any_mesh: VoronoiMesh) -> None:
     model, _ = random_model(any_mesh)
-    tiles = build_tiles(model.mesh, model.topography, model.coriolis, 9.8, 60)
-    assert tiles.first_cell[-1] == any_mesh.n_cells
-    assert tiles.first_edge[-1] == any_mesh.n_edges
-    assert np.all(np.diff(tiles.first_edge) > 0)
-    assert tiles.most.edges <= MIRROR
-    assert tiles.indices.max() < MIRROR + tiles.most.edges
+    found = build_tiles(model.mesh, model.topography, model.coriolis, 9.8, 60)
+    cells = np.arange(any_mesh.n_cells) if found.cell_order is None else found.cell_order
+    edges = np.arange(any_mesh.n_edges) if found.edge_order is None else found.edge_order
+    assert np.array_equal(np.sort(edges), np.arange(any_mesh.n_edges))
+    rank = np.empty_like(cells)
+    rank[cells] = np.arange(any_mesh.n_cells)
+    lower = rank[any_mesh.cells_on_edge].min(axis=1)
+    for tile in range(found.n_tiles):
+        own = lower[edges[found.first_edge[tile] : found.first_edge[tile + 1]]]
+        assert np.all((own >= found.first_cell[tile]) & (own < found.first_cell[tile + 1]))
+
+
+def test_tiles_shrink_until_they_fit(icosahedral_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
+    model, _ = random_model(icosahedral_mesh)
+    arguments = model.mesh, model.topography, model.coriolis, 9.8
+    assert build_tiles(*arguments).n_tiles == 1
+    monkeypatch.setattr(tiles, "MIRROR", 700)
+    smaller = build_tiles(*arguments)
+    assert smaller.n_tiles > 3
+    assert smaller.most.edges <= 700
+    monkeypatch.setattr(tiles, "MIRROR", 5)
+    with pytest.raises(SetupError, match=r"a cell of the mesh has .* edges round it and its neighbours; 5 will do"):
+        build_tiles(*arguments)
+
+
+def test_an_interruption_loses_no_steps(larger_mesh: VoronoiMesh) -> None:
+    """Ctrl-C comes while the compiled loop runs: the clock must say what the state is."""
+    simulation = Simulation(larger_mesh, Williamson5(), time_step=10.0)
+    stepper, state = FusedRungeKutta(simulation.model), simulation.state.copy()
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, interrupt)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.4)
+        with pytest.raises(KeyboardInterrupt):
+            simulation.run(days=1000, progress=False)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        signal.signal(signal.SIGALRM, before)
+    assert simulation.steps > 0
+    assert simulation.time == 10.0 * simulation.steps
+    stepper.advance(state, 10.0, simulation.steps)
+    assert np.array_equal(state.thickness, simulation.state.thickness)
+    assert np.array_equal(state.normal_velocity, simulation.state.normal_velocity)

@@ -63,7 +63,7 @@ def test_result_does_not_depend_on_the_number_of_threads(larger_mesh: VoronoiMes
         numba.set_num_threads(threads)
         try:
             for _ in range(20):
-                simulation._stepper.advance(simulation.state, 600.0)
+                simulation.stepper.advance(simulation.state, 600.0)
         finally:
             numba.set_num_threads(numba.config.NUMBA_NUM_THREADS)
         states.append(simulation.state)
@@ -119,7 +119,7 @@ def test_interruption_is_recorded(
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(simulation._stepper, "advance", interrupt)
+    monkeypatch.setattr(simulation.stepper, "advance", interrupt)
     with pytest.raises(KeyboardInterrupt):
         simulation.run(days=2, progress=False)
     assert json.loads((tmp_path / "run.json").read_text())["status"] == "interrupted"

@@ -1,10 +1,11 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import swe.benchmark
-from mesh import VoronoiMesh, write_mesh
+from mesh import VoronoiMesh, mesh_from_points, write_mesh
 from tests.trisk.conftest import Call
 
 CONTRACT = {"cells", "threads", "ns_per_cell_step", "triad_gb_per_s", "bytes_per_cell_step", "plain_twin_ratio"}
@@ -47,3 +48,16 @@ def test_mesh_and_cells_are_refused_together(trisk: Call, tmp_path: Path) -> Non
     code, _, err = trisk("bench", "--mesh", tmp_path / "mesh.nc", "--cells", 42)
     assert code == 2
     assert "either --mesh FILE or --cells N" in err
+
+
+def test_a_state_that_does_not_survive_is_no_timing(
+    trisk: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Random generators: a few hundred steps at the default time step, and the run blows up."""
+    monkeypatch.setattr(swe.benchmark, "SECONDS_PER_TURN", 0.5)
+    path = tmp_path / "mesh.nc"
+    write_mesh(mesh_from_points(np.random.default_rng(1).normal(size=(500, 3))), path)
+    code, out, err = trisk("bench", "--mesh", path, "-q")
+    assert code == 1
+    assert out == ""
+    assert "blew up" in err
