@@ -2,8 +2,8 @@
 
 The plain twin of `swe.tile_kernels`, and what diagnostics are computed by. No two threads write to one place, so
 results do not depend on the number of threads. Nothing is allocated: every kernel but `largest_rate` writes into the
-array that it is given last. `h`, `u`, `q`, ... are named as in the equations of DESIGN and Ringler et al. (2010); the letters are
-thickness, normal velocity and potential vorticity.
+array that it is given last. `h`, `u`, `q`, ... are named as in the equations of DESIGN and Ringler et al. (2010); the
+letters are thickness, normal velocity and potential vorticity.
 """
 
 import numba
