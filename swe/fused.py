@@ -26,10 +26,11 @@ class FusedRungeKutta:
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
         self._taken = np.zeros(1, np.int64)
 
-    @property
-    def taken(self) -> int:
-        """Number of steps that the last call of `advance` took."""
-        return int(self._taken[0])
+    def count_taken(self) -> int:
+        """Number of steps that were taken since this was last asked."""
+        taken = int(self._taken[0])
+        self._taken[0] = 0
+        return taken
 
     @property
     def unsound(self) -> int:
@@ -47,16 +48,14 @@ class FusedRungeKutta:
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
-        """Advance `state` in place by `steps` steps of `time_step` seconds; gives how many, as `taken` does.
+    def advance(self, state: State, time_step: float, steps: int = 1) -> None:
+        """Advance `state` in place by `steps` steps of `time_step` seconds, fewer where one left `unsound` values.
 
-        There are fewer where a step left `unsound` values. Where Ctrl-C comes in the middle, all steps are taken before
-        it is raised, and the state and `taken` tell so.
+        `count_taken` tells how many. Where Ctrl-C comes in the middle, all steps are taken before it is raised.
         """
         tiles, model = self.tiles, self.model
         h, u = _in_order(state.thickness, tiles.cell_order), _in_order(state.normal_velocity, tiles.edge_order)
         moving = not model.prescribed_wind
-        self._taken[0] = 0
         try:
             rk4_steps(
                 *(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages),
@@ -67,7 +66,6 @@ class FusedRungeKutta:
                 state.thickness[tiles.cell_order] = h
             if tiles.edge_order is not None:
                 state.normal_velocity[tiles.edge_order] = u
-        return self.taken
 
 
 def _in_order(values: Array, order: Index | None) -> Array:

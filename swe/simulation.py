@@ -196,14 +196,16 @@ class Simulation:
 
     def _advance_to(self, event: float, bar: ProgressBar) -> None:
         """Step until `event`, seconds, is reached exactly."""
+        self.stepper.count_taken()  # not those that others took with it
         most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
         while self.time < event:
             step, times = steps_towards(self.time, event, self.configuration.time_step, most)
             try:
                 self.stepper.advance(self.state, step, len(times))
             finally:
-                self.time = [self.time, *times][self.stepper.taken]
-                self.steps += self.stepper.taken
+                taken = self.stepper.count_taken()
+                self.time = [self.time, *times][taken]
+                self.steps += taken
             if self.stepper.unsound:
                 raise RunError(
                     f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "

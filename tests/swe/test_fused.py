@@ -39,7 +39,8 @@ def increments(model: ShallowWaterModel, state: State, steps: int = 3) -> tuple[
     fast, slow = FusedRungeKutta(model), RungeKutta(model.tendency, plain)
     for _ in range(steps):
         slow.step(plain, TIME_STEP)
-    assert fast.advance(fused, TIME_STEP, steps) == steps
+    fast.advance(fused, TIME_STEP, steps)
+    assert fast.count_taken() == steps
     assert fast.unsound == 0
     return difference(fused, state), difference(plain, state)
 
@@ -139,13 +140,16 @@ def test_a_prescribed_wind_stays(any_mesh: VoronoiMesh) -> None:
 def test_unsound_values_are_counted(icosahedral_mesh: VoronoiMesh) -> None:
     model, state = random_model(icosahedral_mesh)
     stepper = FusedRungeKutta(model)
-    assert stepper.advance(state, TIME_STEP, 4) == 4
+    stepper.advance(state, TIME_STEP, 4)
+    assert stepper.count_taken() == 4
     assert stepper.unsound == 0
     state.thickness[7] = -5000.0
-    assert stepper.advance(state, TIME_STEP, 4) == 1
+    stepper.advance(state, TIME_STEP, 4)
+    assert stepper.count_taken() == 1
     assert stepper.unsound >= 1
     state.normal_velocity[3] = np.nan
-    assert stepper.advance(state, TIME_STEP, 4) == 1
+    stepper.advance(state, TIME_STEP, 4)
+    assert stepper.count_taken() == 1
     assert stepper.unsound > 1
 
 
