@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.generators import bisect, icosahedral_mesh
-from mesh.ordering import hilbert_order
+from mesh.ordering import hilbert_order, inverse_order
 
 Single = NDArray[np.float32]
 
@@ -220,8 +220,7 @@ def _transfers(points: Array) -> list[_Transfer]:
         grid, triangles, ends = bisect(grid, triangles)
         located = _locate(points, grid, triangles, located, True)
         order = hilbert_order(grid)
-        rank = np.empty(len(grid), np.int32)
-        rank[order] = np.arange(len(grid), dtype=np.int32)
+        rank = inverse_order(order)
         kept = np.repeat(np.arange(n_coarse, dtype=np.int32)[:, None], 2, axis=1)
         parents = np.concatenate([kept, ends])[order]
         between.append(_Transfer(coarse_rank[parents], np.full(parents.shape, 0.5), n_coarse))

@@ -12,14 +12,20 @@ HILBERT_BITS = 20
 def renumber(points: Array, triangles: Index) -> tuple[Array, Index]:
     """Points (n, 3) along the curve, and their triangles (m, 3), sorted by their lowest corner."""
     order = hilbert_order(points)
-    rank = np.empty(len(points), np.int32)
-    rank[order] = np.arange(len(points), dtype=np.int32)
+    rank = inverse_order(order)
     return np.ascontiguousarray(points[order]), sort_triangles(rank[triangles])
 
 
 def hilbert_order(points: Array) -> Index:
     """Permutation (n,) that numbers unit vectors (n, 3) along Hilbert curves on the six faces of a cube."""
     return np.argsort(_hilbert_keys(points), kind="stable")
+
+
+def inverse_order(order: Index) -> Index:
+    """Place (n,), int32, of every entity in the permutation `order` (n,)."""
+    rank = np.empty(len(order), np.int32)
+    rank[order] = np.arange(len(order), dtype=np.int32)
+    return rank
 
 
 def sort_triangles(triangles: Index) -> Index:

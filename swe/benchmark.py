@@ -4,11 +4,10 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 
-from mesh.arrays import Array
 from swe.errors import RunError
+from swe.kernels import add_scaled
 from swe.simulation import Simulation
 from swe.threads import worthwhile_threads
 from swe.time_stepping import RungeKutta
@@ -28,9 +27,9 @@ class Timing:
     """Medians over alternating turns; a step is one of classical RK4.
 
     `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that by the time.
-    `triad_gb_per_s` is the rate of the STREAM triad in the same process, with two arrays read and one written, and
-    `fraction_of_triad` their ratio. `plain_twin_ratio` is the median over the turns of the plain step's time by that
-    of the fused one.
+    `triad_gb_per_s` is the rate of the triad of STREAM (McCalpin 1995), a = b + 3 c, in the same process, with two
+    arrays read and one written, and `fraction_of_triad` their ratio. `plain_twin_ratio` is the median over the turns
+    of the plain step's time by that of the fused one.
     """
 
     cells: int
@@ -57,7 +56,7 @@ def measure(simulation: Simulation) -> Timing:
     with worthwhile_threads(cells) as threads:
         once = [_seconds(lambda: fused.advance(fast, time_step), 1) for _ in range(3)]
         plain.step(slow, time_step)
-        _triad(a, b, c, 3.0)
+        add_scaled(b, 3.0, c, a)
         repeats = max(1, round(SECONDS_PER_TURN / min(once)))
         turns = np.empty((ROUNDS, 3))
         for turn in turns:
@@ -65,7 +64,7 @@ def measure(simulation: Simulation) -> Timing:
             if fused.unsound:
                 raise RunError(f"the state of {simulation.case.name} on {cells} cells blew up; time on a better mesh")
             turn[1] = _seconds(lambda: plain.step(slow, time_step), max(1, repeats // 2))
-            turn[2] = _seconds(lambda: _triad(a, b, c, 3.0), 1)
+            turn[2] = _seconds(lambda: add_scaled(b, 3.0, c, a), 1)
     nanoseconds, plain_nanoseconds, _ = 1e9 * np.median(turns, axis=0) / cells
     triad = 24 * TRIAD_SIZE / np.median(turns[:, 2]) / 1e9
     volume = fused.bytes_per_step / cells
@@ -88,10 +87,3 @@ def _seconds(work: Callable[[], object], repeats: int) -> float:
     for _ in range(repeats):
         work()
     return (time.perf_counter() - begin) / repeats
-
-
-@numba.njit(parallel=True, cache=True)
-def _triad(a: Array, b: Array, c: Array, factor: float) -> None:
-    """Compute a = b + factor c, the fourth kernel of STREAM (McCalpin 1995)."""
-    for i in numba.prange(a.size):
-        a[i] = b[i] + factor * c[i]

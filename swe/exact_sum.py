@@ -22,11 +22,11 @@ def exact_sum(values: Array) -> float:
 
     Every value is an integer times a power of two, and is added as such to a long integer of `WORDS` words.
     """
+    if not np.isfinite(values).all():
+        return float(values.sum())
     total = 0
     for word in reversed(_words(np.ascontiguousarray(values).view(np.int64)).sum(axis=0).tolist()):
         total = (total << WORD) + word
-    if not np.isfinite(values).all():
-        return float(values.sum())
     return total / (1 << -LOWEST_EXPONENT)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.ordering import hilbert_order
+from mesh.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import SetupError
 from swe.kernels import edge_signs_on_cell, edge_signs_on_vertex
@@ -97,11 +97,11 @@ def build_tiles(
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
     cell_order = _cell_order(mesh, first_cell)
-    cell_rank = _inverse(cell_order)
+    cell_rank = inverse_order(cell_order)
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
-    cutter = _Cutter(mesh, topography, coriolis, gravity, cell_rank, _inverse(edge_order))
+    cutter = _Cutter(mesh, topography, coriolis, gravity, cell_rank, inverse_order(edge_order))
     pieces = [
         cutter.cut(
             cell_order[first_cell[tile] : first_cell[tile + 1]], edge_order[first_edge[tile] : first_edge[tile + 1]]
@@ -258,16 +258,10 @@ def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
     tile = np.searchsorted(first_cell, own, side="right")
 
     def parted(order: Index) -> int:
-        ends = tile[_inverse(order)][mesh.cells_on_edge]
+        ends = tile[inverse_order(order)][mesh.cells_on_edge]
         return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
 
     return own if parted(own) <= DISORDER * parted(curve) else curve
-
-
-def _inverse(order: Index) -> Index:
-    rank = np.empty(len(order), np.int64)
-    rank[order] = np.arange(len(order))
-    return rank
 
 
 def _is_identity(order: Index) -> bool:

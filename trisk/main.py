@@ -225,7 +225,7 @@ def spectra(
 ) -> None:
     """Write and draw spectra of energy and potential enstrophy.
 
-    Of kinetic energy, that is, against total wavenumber.
+    Energy is that of the motion, and the wavenumber the total one.
     """
     from postprocess.runs import read_run
     from postprocess.spectra import write_spectra_of
