@@ -214,7 +214,7 @@ def _transfers(points: Array) -> list[_Transfer]:
     grid, triangles = icosahedral_mesh(0)
     located = _locate(points, grid, triangles, np.zeros(1, np.int32), False)
     between: list[_Transfer] = []
-    rank = np.arange(len(grid), dtype=np.int32)
+    rank: Index = np.arange(len(grid), dtype=np.int32)
     while CELLS_PER_GRID_POINT * (4 * len(grid) - 6) <= 1.2 * len(points):
         coarse_rank, n_coarse = rank, len(grid)
         grid, triangles, ends = bisect(grid, triangles)
