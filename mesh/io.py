@@ -40,7 +40,8 @@ def write_mesh(mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "
     path = Path(path)
     try:
         with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
-            file.setncatts(mesh_attributes(mesh, history))
+            stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+            file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
             write_mesh_variables(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
@@ -49,7 +50,6 @@ def write_mesh(mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "
 
 def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
     """Global attributes that MPAS readers expect."""
-    stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
     return {
         "on_a_sphere": "YES",
         "sphere_radius": float(mesh.sphere_radius),
@@ -57,7 +57,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
         "mesh_spec": "1.0",
         "Conventions": "MPAS",
         "source": "trisk",
-        "history": f"{stamp}: {history or 'written by trisk'}",
+        "history": history,
         "file_id": mesh_hash(mesh)[:10],
         "density_name": mesh.density_name,
     }

@@ -22,36 +22,60 @@ def exact_sum(values: Array) -> float:
 
     Every value is an integer times a power of two, and is added as such to a long integer of `WORDS` words.
     """
-    if not np.isfinite(values).all():
+    words, finite = _words(np.ascontiguousarray(values).view(np.int64))
+    if not finite.all():
         return float(values.sum())
     total = 0
-    for word in reversed(_words(np.ascontiguousarray(values).view(np.int64)).sum(axis=0).tolist()):
+    for word in reversed(words.sum(axis=0).tolist()):
         total = (total << WORD) + word
     return total / (1 << -LOWEST_EXPONENT)
 
 
 @numba.njit(cache=True, parallel=True)
-def _words(bits: Index) -> Index:
-    """Words (PARTS, WORDS) of the sums of parts of doubles given by their bits, the lowest first, with carries."""
-    words = np.zeros((PARTS, WORDS), np.int64)
+def _words(bits: Index) -> tuple[Index, Index]:
+    """Words (PARTS, WORDS) of the sums of parts of doubles given by their bits, the lowest first, with carries.
+
+    And which of the parts (PARTS,) have finite values only.
+    """
+    words, finite = np.zeros((PARTS, WORDS), np.int64), np.ones(PARTS, np.int64)
     for part in numba.prange(PARTS):
-        for i in range(part * bits.size // PARTS, (part + 1) * bits.size // PARTS):
-            _add(bits[i], words[part])
-    return words
+        first, last = part * bits.size // PARTS, (part + 1) * bits.size // PARTS
+        finite[part] = _add(bits[first:last], words[part])
+    return words, finite
 
 
 @numba.njit(cache=True)
-def _add(bits: int, words: Index) -> None:
-    exponent = (bits >> 52) & 0x7FF
-    mantissa = bits & 0xFFFFFFFFFFFFF
-    if exponent > 0:
-        mantissa |= 1 << 52
-        exponent -= 1
-    word, shift = np.uint64(exponent >> 5), exponent & 31  # division by WORD, and what it leaves
-    sign = -1 if bits < 0 else 1
-    # Shifted by up to 31 bits the mantissa covers three words; its lower 32 bits and its upper 21 stay below 2^63.
-    low = (mantissa & 0xFFFFFFFF) << shift
-    high = (mantissa >> WORD) << shift
-    words[word] += sign * (low & 0xFFFFFFFF)
-    words[word + np.uint64(1)] += sign * ((low >> WORD) + (high & 0xFFFFFFFF))
-    words[word + np.uint64(2)] += sign * (high >> WORD)
+def _add(bits: Index, words: Index) -> int:
+    """Add doubles given by their bits to `words`; 0 where some are not finite, else 1.
+
+    Shifted by up to 31 bits a mantissa covers three words. Neighbours mostly begin in the same one, so three sums are
+    kept aside until another word comes up.
+    """
+    at = 0
+    low_sum = middle_sum = high_sum = 0
+    for value in bits:
+        exponent = (value >> 52) & 0x7FF
+        if exponent == 0x7FF:
+            return 0
+        mantissa = value & 0xFFFFFFFFFFFFF
+        if exponent > 0:
+            mantissa |= 1 << 52
+            exponent -= 1
+        word, shift = exponent >> 5, exponent & 31  # division by WORD, and what it leaves
+        if word != at:
+            words[at] += low_sum
+            words[at + 1] += middle_sum
+            words[at + 2] += high_sum
+            low_sum = middle_sum = high_sum = 0
+            at = word
+        # The mantissa's lower 32 bits and its upper 21 stay below 2^63 when shifted.
+        low = (mantissa & 0xFFFFFFFF) << shift
+        high = (mantissa >> WORD) << shift
+        sign = -1 if value < 0 else 1
+        low_sum += sign * (low & 0xFFFFFFFF)
+        middle_sum += sign * ((low >> WORD) + (high & 0xFFFFFFFF))
+        high_sum += sign * (high >> WORD)
+    words[at] += low_sum
+    words[at + 1] += middle_sum
+    words[at + 2] += high_sum
+    return 1

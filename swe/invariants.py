@@ -3,6 +3,9 @@
 import sys
 from dataclasses import dataclass
 
+import numpy as np
+
+from swe import kernels
 from swe.exact_sum import exact_sum
 from swe.model import Diagnosis, ShallowWaterModel
 from swe.state import State
@@ -48,20 +51,24 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     Kinetic energy is the sum of A_i h_i K_i, potential energy that of g A_i h_i (h_i/2 + b_i), potential enstrophy
     that of A_v h_v q_v^2/2, absolute vorticity that of A_v (f_v + zeta_v): Ringler et al. (2010), section 3.
     """
-    mesh = model.mesh
-    h, b, g = state.thickness, model.topography, model.gravity
-    volume = mesh.area_cell * h
-    mass = exact_sum(volume)
-    level = exact_sum(mesh.area_cell * (h + b)) / model.area
-    absolute_vorticity = model.coriolis + diagnosis.relative_vorticity
+    mesh, h, g = model.mesh, state.thickness, model.gravity
+    mass = exact_sum(mesh.area_cell * h)
+    level = (mass + model.bottom_volume) / model.area
+    on_cells, on_vertices = np.empty((4, mesh.n_cells)), np.empty((2, mesh.n_vertices))
+    kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
+    kernels.vorticities(
+        mesh.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
+    )
+    kinetic, potential, available, of_depth = map(exact_sum, on_cells)
+    absolute_vorticity, enstrophy = map(exact_sum, on_vertices)
     return Invariants(
         mass=mass,
-        kinetic_energy=exact_sum(volume * diagnosis.kinetic_energy),
-        potential_energy=g * exact_sum(volume * (0.5 * h + b)),
-        available_potential_energy=0.5 * g * exact_sum(mesh.area_cell * (h + b - level) ** 2),
-        potential_energy_of_depth=0.5 * g * exact_sum(volume * h),
-        potential_enstrophy=0.5 * exact_sum(mesh.area_triangle * absolute_vorticity * diagnosis.potential_vorticity),
-        absolute_vorticity=exact_sum(mesh.area_triangle * absolute_vorticity),
+        kinetic_energy=kinetic,
+        potential_energy=g * potential,
+        available_potential_energy=0.5 * g * available,
+        potential_energy_of_depth=0.5 * g * of_depth,
+        potential_enstrophy=0.5 * enstrophy,
+        absolute_vorticity=absolute_vorticity,
         planetary_vorticity_magnitude=model.planetary_vorticity_magnitude,
     )
 

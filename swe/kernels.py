@@ -125,6 +125,25 @@ def velocity_tendency(
 
 
 @compiled
+def energies(A: Array, h: Array, b: Array, K: Array, level: float, result: Array) -> None:
+    """A_i times h_i K_i, h_i (h_i/2 + b_i), (h_i + b_i - level)^2 and h_i^2 at cells: rows of `result` (4, n_cells)."""
+    for i in numba.prange(h.size):
+        volume = A[i] * h[i]
+        result[0, i] = volume * K[i]
+        result[1, i] = volume * (0.5 * h[i] + b[i])
+        result[2, i] = A[i] * (h[i] + b[i] - level) ** 2
+        result[3, i] = volume * h[i]
+
+
+@compiled
+def vorticities(A: Array, f: Array, zeta: Array, q: Array, result: Array) -> None:
+    """A_v (f_v + zeta_v), and that times q_v, at vertices: rows of `result` (2, n_vertices)."""
+    for v in numba.prange(q.size):
+        result[0, v] = A[v] * (f[v] + zeta[v])
+        result[1, v] = result[0, v] * q[v]
+
+
+@compiled
 def largest_rate(h: Array, u: Array, g: float, waves: bool, cells_on_edge: Index, dc_edge: Array) -> float:
     """Largest (sqrt(g h) + |u|) / d_e over all edges, 1/s, with the deeper cell's h; |u| / d_e without waves."""
     largest = 0.0

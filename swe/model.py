@@ -40,8 +40,9 @@ class ShallowWaterModel:
 
     Attributes
     ----------
-    area, planetary_vorticity_magnitude
-        Area of the sphere, m2, and integral of the magnitude of the Coriolis parameter, m2/s.
+    area, bottom_volume, planetary_vorticity_magnitude
+        Area of the sphere, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
+        m2/s.
 
     Raises
     ------
@@ -60,6 +61,7 @@ class ShallowWaterModel:
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
         self.area = exact_sum(mesh.area_cell)
+        self.bottom_volume = exact_sum(mesh.area_cell * topography)
         self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
         self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
         self._vorticity = np.empty(mesh.n_vertices)

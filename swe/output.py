@@ -1,8 +1,12 @@
-"""The files of a run directory: the mesh, snapshots, diagnostics and the record of the run (DESIGN, section 5)."""
+"""The files of a run directory: the mesh, snapshots, diagnostics and the record of the run (DESIGN, section 5).
+
+Files that grow are of the classic format with 64-bit offsets: rows follow each other, so that a file is readable
+whatever happens to the program, and rows can be written again. Equal runs give equal files, byte for byte.
+"""
 
 import json
+import time as clock
 from collections.abc import Mapping
-from contextlib import suppress
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -25,6 +29,9 @@ DIAGNOSTICS_FILE = "diagnostics.nc"
 MESH_FILE = "mesh.nc"
 RECORD_FILE = "run.json"
 FIGURES_FOLDER = "figures"
+
+SECONDS_BETWEEN_WRITES = 1.0
+"""Rows of diagnostics are written together, as each writing takes as long as many rows."""
 
 GEOMETRY = frozenset(BY_NAME) - {
     *("n_edges_on_edge", "edges_on_edge", "weights_on_edge", "kite_areas_on_vertex"),
@@ -66,7 +73,7 @@ PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
     """Make a history file without snapshots."""
-    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+    with _new_file(path) as file:
         file.setncatts(mesh_attributes(mesh, "snapshots of a shallow-water run"))
         write_mesh_variables(file, mesh, GEOMETRY)
         _define_time(file)
@@ -78,62 +85,80 @@ def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
 
 def create_diagnostics(path: Path) -> None:
     """Make a diagnostics file without rows."""
-    with netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+    with _new_file(path) as file:
         _define_time(file)
         for name, (units, long_name) in SERIES.items():
             _define(file, name, ("Time",), units, long_name)
 
 
+def _new_file(path: Path) -> netCDF4.Dataset:
+    file = netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
+    file.set_fill_off()
+    return file
+
+
 class _TimeFile:
-    """A file that grows along time, complete after every row."""
+    """A file that grows along time; `rows` is where the next one goes."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
         self._file = netCDF4.Dataset(path, "r+")
         # Values are written as they are; looking for masks and scales takes as long as writing them.
         self._file.set_auto_maskandscale(False)
+        self._file.set_fill_off()
+        self.rows = len(self._file.dimensions["Time"])
+        self._failed = False
 
-    def _append(self, time: float, values: Mapping[str, Array | float]) -> None:
+    def _write(self, values: Mapping[str, Array]) -> None:
+        """Write new rows (n, ...) of every variable."""
+        rows = slice(self.rows, self.rows + len(values["time"]))
         try:
-            row = len(self._file.dimensions["Time"])
             for name, value in values.items():
-                self._file[name][row] = value
-            self._file["time"][row] = time
+                self._file[name][rows] = value
             self._file.sync()
         except (OSError, RuntimeError) as error:
+            self._failed = True
             raise RunError(f"{self._path} cannot be written ({error}); is the disk full?") from error
+        self.rows = rows.stop
 
     def close(self) -> None:
-        """Close the file; a failure to do so has shown itself before."""
-        with suppress(OSError, RuntimeError):
+        """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
+        if not self._failed:
             self._file.close()
 
 
 class HistoryFile(_TimeFile):
-    """Snapshots, appended one by one."""
+    """Snapshots, written one by one."""
 
     def append(self, time: float, model: ShallowWaterModel, state: State, diagnosis: Diagnosis) -> None:
         """Write the snapshot of `state` and of what follows from it at `time`, seconds since the start."""
         zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
-        values = {
+        fields = {
             **vars(diagnosis),
             "thickness": state.thickness,
             "surface_height": state.thickness + model.topography,
             "normal_velocity": state.normal_velocity,
             "velocity_zonal": zonal,
             "velocity_meridional": meridional,
+            "time": np.array(time),
         }
-        self._append(time, values)
+        self._write({name: values[None] for name, values in fields.items()})
 
 
 class DiagnosticsFile(_TimeFile):
-    """Time series of invariants and of what limits the time step."""
+    """Time series of invariants and of what limits the time step; rows wait for each other for up to a second."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__(path)
+        self._waiting: list[dict[str, float]] = []
+        self._written = clock.monotonic()
 
     def append(
         self, time: float, invariants: Invariants, changes: Changes, courant_number: float, max_speed: float
     ) -> None:
-        """Write one row at `time`, seconds since the start."""
-        values = {
+        """Add the row of `time`, seconds since the start."""
+        row = {
+            "time": time,
             "mass": invariants.mass,
             "mass_change": changes.mass,
             "total_energy": invariants.total_energy,
@@ -148,7 +173,23 @@ class DiagnosticsFile(_TimeFile):
             "courant_number": courant_number,
             "max_speed": max_speed,
         }
-        self._append(time, values)
+        self._waiting.append(row)
+        if clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        waiting, self._waiting = self._waiting, []
+        if waiting:
+            self._write({name: np.array([row[name] for row in waiting]) for name in waiting[0]})
+        self._written = clock.monotonic()
+
+    def close(self) -> None:
+        """Write the rows that wait, and close the file; the former may raise `RunError`."""
+        try:
+            self.flush()
+        finally:
+            super().close()
 
 
 def write_record(directory: Path, record: dict[str, object]) -> None:

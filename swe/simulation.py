@@ -17,6 +17,7 @@ from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, SetupError
 from swe.fused import FusedRungeKutta
 from swe.invariants import Invariants, measure_invariants, relative_changes
+from swe.memory import return_freed_memory
 from swe.model import ShallowWaterModel, check_field
 from swe.output import (
     DIAGNOSTICS_FILE,
@@ -150,12 +151,13 @@ class Simulation:
             time_step = self._default_time_step(min(snapshot_interval, diagnostics_interval))
         _require_positive("the time step", time_step)
         self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
-        self.initial_courant_number = self.model.courant_number(self.state, time_step)
+        self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = self.invariants
         self._directory = None if output is None else Path(output)
         if self._directory is not None:
             _check_directory(self._directory, overwrite)
         self.stepper = FusedRungeKutta(self.model)
+        return_freed_memory()
 
     def _default_time_step(self, interval: float) -> float:
         """Largest step up to the default Courant number that divides `interval`."""
@@ -213,7 +215,8 @@ class Simulation:
                     f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
                 )
             bar.update(self.time / SECONDS_PER_DAY)
-        bar.show_courant_number(self.model.courant_number(self.state, self.configuration.time_step))
+        self.courant_number = self.model.courant_number(self.state, self.configuration.time_step)
+        bar.show_courant_number(self.courant_number)
 
     def _problem_with_state(self) -> str | None:
         """What is wrong with the state, as the end of a sentence; None if nothing is."""
@@ -277,7 +280,7 @@ class _Recorder:
                 simulation.time,
                 invariants,
                 relative_changes(simulation.initial_invariants, invariants),
-                model.courant_number(state, simulation.configuration.time_step),
+                simulation.courant_number,
                 float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
             )
 
