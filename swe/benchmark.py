@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swe.errors import RunError
+from swe.fused import FusedRungeKutta
 from swe.kernels import add_scaled
 from swe.simulation import Simulation
 from swe.threads import worthwhile_threads
@@ -48,7 +49,8 @@ def measure(simulation: Simulation) -> Timing:
 
     Raises `RunError` where the state does not survive the steps.
     """
-    model, fused, time_step = simulation.model, simulation.stepper, simulation.configuration.time_step
+    model, fused, time_step = simulation.model, simulation.method, simulation.configuration.time_step
+    assert isinstance(fused, FusedRungeKutta)
     cells = model.mesh.n_cells
     plain = RungeKutta(model.tendency, simulation.state)
     fast, slow = simulation.state.copy(), simulation.state.copy()

@@ -6,7 +6,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from swe.model import ShallowWaterModel
 from swe.state import State
-from swe.tile_kernels import MIRROR, rk4_steps
+from swe.tile_kernels import MIRROR, rk4_steps, stage
 from swe.tiles import Tiles, build_tiles
 
 
@@ -24,13 +24,6 @@ class FusedRungeKutta:
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(3)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
-        self._taken = np.zeros(1, np.int64)
-
-    def count_taken(self) -> int:
-        """Number of steps that were taken since this was last asked."""
-        taken = int(self._taken[0])
-        self._taken[0] = 0
-        return taken
 
     @property
     def unsound(self) -> int:
@@ -48,24 +41,45 @@ class FusedRungeKutta:
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> None:
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
         """Advance `state` in place by `steps` steps of `time_step` seconds, fewer where one left `unsound` values.
 
-        `count_taken` tells how many. Where Ctrl-C comes in the middle, all steps are taken before it is raised.
+        Gives the number of steps taken.
         """
         tiles, model = self.tiles, self.model
-        h, u = _in_order(state.thickness, tiles.cell_order), _in_order(state.normal_velocity, tiles.edge_order)
-        moving = not model.prescribed_wind
-        try:
-            rk4_steps(
-                *(tiles.arrays, self._scratch, model.gravity, moving, (h, u), *self._stages),
-                *(time_step, steps, self._taken, self._unsound),
-            )
-        finally:
-            if tiles.cell_order is not None:
-                state.thickness[tiles.cell_order] = h
-            if tiles.edge_order is not None:
-                state.normal_velocity[tiles.edge_order] = u
+        h, u = self._in_order(state)
+        taken: int = rk4_steps(
+            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, (h, u), *self._stages),
+            *(time_step, steps, self._unsound),
+        )
+        self._put_back(h, u, state)
+        return taken
+
+    def tendency(self, state: State, result: State) -> None:
+        """Write the time derivative of `state` into `result`, as the stages of a step take it."""
+        tiles, model = self.tiles, self.model
+        slope = self._stages[0]
+        for values in slope:
+            values.fill(0.0)
+        stage(
+            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, slope, self._in_order(state)),
+            *(slope, slope, slope, 1.0, 1.0, False, self._unsound),
+        )
+        self._put_back(*slope, result)
+
+    def _in_order(self, state: State) -> tuple[Array, Array]:
+        """Thickness and velocity in the order of the tiles: the state's own arrays where that is their order."""
+        tiles = self.tiles
+        return _in_order(state.thickness, tiles.cell_order), _in_order(state.normal_velocity, tiles.edge_order)
+
+    def _put_back(self, h: Array, u: Array, state: State) -> None:
+        """Put values in the order of the tiles into `state`, unless they are its own arrays."""
+        for values, order, target in (
+            (h, self.tiles.cell_order, state.thickness),
+            (u, self.tiles.edge_order, state.normal_velocity),
+        ):
+            if values is not target:
+                target[slice(None) if order is None else order] = values
 
 
 def _in_order(values: Array, order: Index | None) -> Array:

@@ -53,7 +53,7 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     """
     mesh, h, g = model.mesh, state.thickness, model.gravity
     mass = exact_sum(mesh.area_cell * h)
-    level = (mass + model.bottom_volume) / model.area
+    level = _level(model, mass)
     on_cells, on_vertices = np.empty((4, mesh.n_cells)), np.empty((2, mesh.n_vertices))
     kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
     kernels.vorticities(
@@ -71,6 +71,15 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
         absolute_vorticity=absolute_vorticity,
         planetary_vorticity_magnitude=model.planetary_vorticity_magnitude,
     )
+
+
+def mean_level(model: ShallowWaterModel, state: State) -> float:
+    """Height of the level surface over the same mass, m."""
+    return _level(model, exact_sum(model.mesh.area_cell * state.thickness))
+
+
+def _level(model: ShallowWaterModel, mass: float) -> float:
+    return (mass + model.bottom_volume) / model.area
 
 
 @dataclass(frozen=True)

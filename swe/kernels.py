@@ -14,6 +14,9 @@ from mesh.voronoi_mesh import VoronoiMesh
 
 compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
 
+BLOCKS = 64
+"""Parts in which sums are taken, whatever the number of threads, so that results do not depend on it."""
+
 
 def edge_signs_on_cell(mesh: VoronoiMesh) -> Array:
     """+1 where the normal of `edges_on_cell[c, j]` leaves cell c, -1 where it enters, 0 beyond the ring."""
@@ -125,6 +128,103 @@ def velocity_tendency(
 
 
 @compiled
+def mean_of_kites(
+    q: Array,
+    n_edges_on_cell: Index,
+    vertices_on_cell: Index,
+    cells_on_vertex: Index,
+    kites: Array,
+    area_cell: Array,
+    q_cell: Array,
+) -> None:
+    """q_i = 1/A_i sum_v kite_vi q_v at cells."""
+    for i in numba.prange(q_cell.size):
+        total = 0.0
+        for j in range(n_edges_on_cell[i]):
+            v = vertices_on_cell[i, j]
+            for k in range(3):
+                if cells_on_vertex[v, k] == i:
+                    total += kites[v, k] * q[v]
+        q_cell[i] = total / area_cell[i]
+
+
+@compiled
+def anticipate(
+    u: Array,
+    q: Array,
+    q_cell: Array,
+    time: float,
+    cells_on_edge: Index,
+    vertices_on_edge: Index,
+    n_edges_on_edge: Index,
+    edges_on_edge: Index,
+    weights_on_edge: Array,
+    dc_edge: Array,
+    dv_edge: Array,
+    q_edge: Array,
+) -> None:
+    """Take time (u . grad q)_e from q_e at edges: q is anticipated to be what flows there within `time` seconds."""
+    for e in numba.prange(u.size):
+        tangential = 0.0
+        for j in range(n_edges_on_edge[e]):
+            tangential += weights_on_edge[e, j] * u[edges_on_edge[e, j]]
+        across = (q_cell[cells_on_edge[e, 1]] - q_cell[cells_on_edge[e, 0]]) / dc_edge[e]
+        along = (q[vertices_on_edge[e, 1]] - q[vertices_on_edge[e, 0]]) / dv_edge[e]
+        q_edge[e] -= time * (u[e] * across + tangential * along)
+
+
+@compiled
+def energy_along(
+    h: Array,
+    u: Array,
+    height: Array,
+    p: Array,
+    v: Array,
+    g: float,
+    A: Array,
+    dv_edge: Array,
+    dc_edge: Array,
+    cells_on_edge: Index,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v.
+
+    The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges and of g A_i h_i (h_i/2 + height_i) over cells.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        first = second = third = 0.0
+        for e in range(k * u.size // blocks, (k + 1) * u.size // blocks):
+            i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
+            h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * (p[i] + p[j])
+            half = 0.5 * dv_edge[e] * dc_edge[e]
+            first += half * u[e] * (2.0 * h_e * v[e] + p_e * u[e])
+            second += half * v[e] * (h_e * v[e] + 2.0 * p_e * u[e])
+            third += half * v[e] * v[e] * p_e
+        for i in range(k * h.size // blocks, (k + 1) * h.size // blocks):
+            first += g * A[i] * p[i] * (h[i] + height[i])
+            second += 0.5 * g * A[i] * p[i] * p[i]
+        sums[k, 0], sums[k, 1], sums[k, 2] = first, second, third
+
+
+@compiled
+def vector_laplacian(
+    minus_divergence: Array,
+    zeta: Array,
+    cells_on_edge: Index,
+    vertices_on_edge: Index,
+    dc_edge: Array,
+    dv_edge: Array,
+    result: Array,
+) -> None:
+    """(grad div u + k x grad zeta)_e at edges, from -div u at cells and zeta at vertices."""
+    for e in numba.prange(result.size):
+        across = minus_divergence[cells_on_edge[e, 0]] - minus_divergence[cells_on_edge[e, 1]]
+        along = zeta[vertices_on_edge[e, 1]] - zeta[vertices_on_edge[e, 0]]
+        result[e] = across / dc_edge[e] - along / dv_edge[e]
+
+
+@compiled
 def energies(A: Array, h: Array, b: Array, K: Array, level: float, result: Array) -> None:
     """A_i times h_i K_i, h_i (h_i/2 + b_i), (h_i + b_i - level)^2 and h_i^2 at cells: rows of `result` (4, n_cells)."""
     for i in numba.prange(h.size):
@@ -160,3 +260,79 @@ def add_scaled(y: Array, factor: float, k: Array, result: Array) -> None:
     """Result = y + factor k, entry by entry; `result` may be `y`."""
     for i in numba.prange(y.size):
         result[i] = y[i] + factor * k[i]
+
+
+@compiled
+def count_unsound(h: Array, u: Array) -> int:
+    """Number of thicknesses that are not positive and of values that are not finite."""
+    count = 0
+    for i in numba.prange(h.size):
+        if not (0.0 < h[i] < np.inf):
+            count += 1
+    for e in numba.prange(u.size):
+        if not np.isfinite(u[e]):
+            count += 1
+    return count
+
+
+@compiled
+def work_of(
+    a: Array,
+    F: Array,
+    q: Array,
+    edges_on_vertex: Index,
+    sign: Array,
+    dc_edge: Array,
+    dv_edge: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 3) of what accelerations a_e do to total energy, absolute vorticity and potential enstrophy.
+
+    The sums of l_e d_e F_e a_e over edges, of the circulation C_v = sum_e t_ev d_e a_e over vertices, and of q_v C_v.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        energy = vorticity = enstrophy = 0.0
+        for e in range(k * a.size // blocks, (k + 1) * a.size // blocks):
+            energy += dv_edge[e] * dc_edge[e] * F[e] * a[e]
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            circulation = 0.0
+            for j in range(3):
+                e = edges_on_vertex[v, j]
+                circulation += sign[v, j] * dc_edge[e] * a[e]
+            vorticity += circulation
+            enstrophy += q[v] * circulation
+        sums[k, 0], sums[k, 1], sums[k, 2] = energy, vorticity, enstrophy
+
+
+@compiled
+def work_of_transport(
+    dh: Array, A: Array, B: Array, q: Array, cells_on_vertex: Index, kites: Array, sums: Array
+) -> None:
+    """Parts (blocks, 3) of what tendencies of thickness do to mass, total energy and potential enstrophy.
+
+    The sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        mass = energy = enstrophy = 0.0
+        for i in range(k * dh.size // blocks, (k + 1) * dh.size // blocks):
+            mass += A[i] * dh[i]
+            energy += A[i] * B[i] * dh[i]
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            volume = 0.0
+            for j in range(3):
+                volume += kites[v, j] * dh[cells_on_vertex[v, j]]
+            enstrophy -= 0.5 * q[v] * q[v] * volume
+        sums[k, 0], sums[k, 1], sums[k, 2] = mass, energy, enstrophy
+
+
+@compiled
+def gradient_force(
+    h: Array, b: Array, K: Array, g: float, cells_on_edge: Index, dc_edge: Array, B: Array, force: Array
+) -> None:
+    """The Bernoulli function B_i = g (h_i + b_i) + K_i at cells, and minus its gradient at edges."""
+    for i in numba.prange(B.size):
+        B[i] = g * (h[i] + b[i]) + K[i]
+    for e in numba.prange(force.size):
+        force[e] = (B[cells_on_edge[e, 0]] - B[cells_on_edge[e, 1]]) / dc_edge[e]

@@ -12,6 +12,9 @@ from swe.errors import SetupError
 from swe.exact_sum import exact_sum
 from swe.state import State
 
+STABLE_COURANT_NUMBER = 2.0 / 3.0**0.5
+"""Linear gravity waves on regular hexagons are stable under classical RK4 up to here, see `courant_number`."""
+
 
 @dataclass(frozen=True, eq=False)
 class Diagnosis:
@@ -40,6 +43,11 @@ class ShallowWaterModel:
 
     Attributes
     ----------
+    anticipation
+        Seconds by which the tendency anticipates potential vorticity, q_e - anticipation (u . grad q)_e in the Coriolis
+        force (Sadourny and Basdevant 1985); 0 unless it is set.
+    sign_on_vertex
+        Signs of circulations round vertices, see `kernels.edge_signs_on_vertex`.
     area, bottom_volume, planetary_vorticity_magnitude
         Area of the sphere, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
         m2/s.
@@ -60,10 +68,11 @@ class ShallowWaterModel:
         self.coriolis = coriolis
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
+        self.anticipation = 0.0
         self.area = exact_sum(mesh.area_cell)
         self.bottom_volume = exact_sum(mesh.area_cell * topography)
         self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
-        self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
+        self.sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
@@ -108,6 +117,8 @@ class ShallowWaterModel:
         mesh, q_edge = self.mesh, self._potential_vorticity_edge
         self._update_vorticity(state)
         kernels.mean_of_vertices(self._potential_vorticity, mesh.vertices_on_edge, q_edge)
+        if self.anticipation > 0.0:
+            self._anticipate(state, q_edge)
         self._update_kinetic_energy(state)
         kernels.velocity_tendency(
             state.thickness,
@@ -123,6 +134,56 @@ class ShallowWaterModel:
             mesh.dc_edge,
             result.normal_velocity,
         )
+
+    def _anticipate(self, state: State, q_edge: Array) -> None:
+        """Take what is anticipated from `q_edge`; potential vorticity at vertices is there already."""
+        mesh, q_cell = self.mesh, np.empty(self.mesh.n_cells)
+        kernels.mean_of_kites(
+            self._potential_vorticity,
+            mesh.n_edges_on_cell,
+            mesh.vertices_on_cell,
+            mesh.cells_on_vertex,
+            mesh.kite_areas_on_vertex,
+            mesh.area_cell,
+            q_cell,
+        )
+        kernels.anticipate(
+            state.normal_velocity,
+            self._potential_vorticity,
+            q_cell,
+            self.anticipation,
+            mesh.cells_on_edge,
+            mesh.vertices_on_edge,
+            mesh.n_edges_on_edge,
+            mesh.edges_on_edge,
+            mesh.weights_on_edge,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            q_edge,
+        )
+
+    def anticipated_acceleration(self, state: State) -> Array:
+        """What the anticipation adds to the Coriolis force at edges (n_edges,), m/s2."""
+        mesh, F = self.mesh, self._thickness_flux
+        kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, F)
+        self._update_vorticity(state)
+        q_edge, nothing, result = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells), np.empty(mesh.n_edges)
+        self._anticipate(state, q_edge)
+        kernels.velocity_tendency(
+            nothing,
+            nothing,
+            nothing,
+            F,
+            q_edge,
+            0.0,
+            mesh.cells_on_edge,
+            mesh.n_edges_on_edge,
+            mesh.edges_on_edge,
+            mesh.weights_on_edge,
+            mesh.dc_edge,
+            result,
+        )
+        return result
 
     def diagnose(self, state: State) -> Diagnosis:
         """Fields that follow from `state`, as new arrays."""
@@ -153,7 +214,7 @@ class ShallowWaterModel:
         kernels.relative_vorticity(
             state.normal_velocity,
             mesh.edges_on_vertex,
-            self._sign_on_vertex,
+            self.sign_on_vertex,
             mesh.dc_edge,
             mesh.area_triangle,
             self._vorticity,

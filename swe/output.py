@@ -19,7 +19,8 @@ from mesh.files import written_aside
 from mesh.io import mesh_attributes, write_mesh_variables
 from mesh.operators import velocity_at_cells
 from mesh.voronoi_mesh import VoronoiMesh
-from swe.errors import RunError
+from swe.budgets import rate_series, rates_of_time
+from swe.errors import RunError, SetupError
 from swe.invariants import Changes, Invariants
 from swe.model import Diagnosis, ShallowWaterModel
 from swe.state import State
@@ -65,6 +66,7 @@ SERIES = {
     "absolute_vorticity_change": ("1", "change of absolute vorticity relative to the integral of |f|"),
     "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges, |u| dt / d if the wind is prescribed"),
     "max_speed": ("m s-1", "largest speed sqrt(2 K) over all cells"),
+    **rate_series(),
 }
 """Diagnostics: name -> units, meaning."""
 
@@ -98,16 +100,25 @@ def _new_file(path: Path) -> netCDF4.Dataset:
 
 
 class _TimeFile:
-    """A file that grows along time; `rows` is where the next one goes."""
+    """A file that grows along time; `rows` is where the next one goes: after the last, or over what follows `rows`.
 
-    def __init__(self, path: Path) -> None:
+    Raises `RunError` where the file cannot be opened, or has fewer rows than that.
+    """
+
+    def __init__(self, path: Path, rows: int | None) -> None:
         self._path = path
-        self._file = netCDF4.Dataset(path, "r+")
+        self._failed = False
+        try:
+            self._file = netCDF4.Dataset(path, "r+")
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
         # Values are written as they are; looking for masks and scales takes as long as writing them.
         self._file.set_auto_maskandscale(False)
         self._file.set_fill_off()
-        self.rows = len(self._file.dimensions["Time"])
-        self._failed = False
+        present = len(self._file.dimensions["Time"])
+        if rows is not None and rows > present:
+            raise RunError(f"{path} has {present} rows, but its run had written {rows}; start anew (--force)")
+        self.rows = present if rows is None else rows
 
     def _write(self, values: Mapping[str, Array]) -> None:
         """Write new rows (n, ...) of every variable."""
@@ -148,15 +159,24 @@ class HistoryFile(_TimeFile):
 class DiagnosticsFile(_TimeFile):
     """Time series of invariants and of what limits the time step; rows wait for each other for up to a second."""
 
-    def __init__(self, path: Path) -> None:
-        super().__init__(path)
+    def __init__(self, path: Path, rows: int | None) -> None:
+        super().__init__(path, rows)
         self._waiting: list[dict[str, float]] = []
         self._written = clock.monotonic()
+        self._last: dict[str, float] | None = None
+        if self.rows > 0:
+            self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *SERIES)}
 
     def append(
-        self, time: float, invariants: Invariants, changes: Changes, courant_number: float, max_speed: float
+        self,
+        time: float,
+        invariants: Invariants,
+        changes: Changes,
+        rates: Mapping[str, float],
+        courant_number: float,
+        max_speed: float,
     ) -> None:
-        """Add the row of `time`, seconds since the start."""
+        """Add the row of `time`, seconds since the start; `rates` are those of the terms (`swe.budgets`)."""
         row = {
             "time": time,
             "mass": invariants.mass,
@@ -172,7 +192,10 @@ class DiagnosticsFile(_TimeFile):
             "absolute_vorticity_change": changes.absolute_vorticity,
             "courant_number": courant_number,
             "max_speed": max_speed,
+            **rates,
         }
+        row.update(rates_of_time(row, self._last))
+        self._last = row
         self._waiting.append(row)
         if clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()
@@ -190,6 +213,22 @@ class DiagnosticsFile(_TimeFile):
             self.flush()
         finally:
             super().close()
+
+
+def read_record(directory: Path) -> dict[str, object] | None:
+    """What `run.json` holds, None where there is none; raise `SetupError` where it is not the record of a run."""
+    path = directory / RECORD_FILE
+    try:
+        record = json.loads(path.read_text())
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except (OSError, ValueError) as error:
+        raise SetupError(
+            f"{path} is not the record of a run ({error}); remove it or choose another directory"
+        ) from error
+    if not isinstance(record, dict):
+        raise SetupError(f"{path} is no record of a run; remove it or choose another directory")
+    return record
 
 
 def write_record(directory: Path, record: dict[str, object]) -> None:

@@ -7,6 +7,9 @@ import numpy as np
 ROUNDING = 1e-9
 """A step that would stop short of an event by less than this part of itself lands on the event."""
 
+EXCESS = 0.01
+"""Part of a step by which the steps before an event may be longer together than asked for."""
+
 
 @dataclass(frozen=True)
 class Schedule:
@@ -45,6 +48,12 @@ def steps_towards(time: float, event: float, time_step: float, most: int) -> tup
             break
         times.append(following)
     return step, times
+
+
+def equal_step(time: float, event: float, time_step: float) -> float:
+    """Length of the steps that divide what is left to `event`, about `time_step` and at most a hundredth more."""
+    remaining = event - time
+    return float(remaining / max(1.0, np.ceil(remaining / time_step - EXCESS)))
 
 
 def dividing_step(limit: float, interval: float) -> float:

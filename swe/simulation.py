@@ -1,49 +1,45 @@
-"""The run loop: clock, schedules, output, progress and the watch over the state."""
+"""The run loop: clock, schedules, progress and the watch over the state."""
 
 import os
-import time as clock
-from dataclasses import asdict, dataclass
+import warnings
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol, get_args
 
-import numba
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.io import mesh_hash, write_mesh
 from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import RunError, SetupError
+from swe.dissipation import BiharmonicDissipation
+from swe.errors import RunError, SetupError, SetupWarning
 from swe.fused import FusedRungeKutta
-from swe.invariants import Invariants, measure_invariants, relative_changes
+from swe.invariants import Invariants, measure_invariants
 from swe.memory import return_freed_memory
-from swe.model import ShallowWaterModel, check_field
-from swe.output import (
-    DIAGNOSTICS_FILE,
-    HISTORY_FILE,
-    MESH_FILE,
-    RECORD_FILE,
-    DiagnosticsFile,
-    HistoryFile,
-    create_diagnostics,
-    create_history,
-    package_versions,
-    write_record,
-)
+from swe.model import STABLE_COURANT_NUMBER, ShallowWaterModel, check_field
 from swe.progress import ProgressBar
-from swe.schedule import Schedule, dividing_step, steps_towards
+from swe.recorder import Recorder
+from swe.relaxation import Relaxation
+from swe.schedule import Schedule, dividing_step
+from swe.signals import StopRequest, stop_requests
 from swe.state import State
+from swe.steppers import DissipatingMethod, FixedSteps, RelaxedSteps, Stepper
 from swe.threads import worthwhile_threads
+from swe.time_stepping import RungeKutta
 
 DEFAULT_COURANT_NUMBER = 0.8
 """Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
 
 CELL_STEPS_PER_CALL = 400_000
-"""Cells times steps between two looks at the keyboard and the bar of progress: some twentieth of a second."""
+"""Cells times steps between two looks at signals and the bar of progress: some twentieth of a second."""
 
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
+DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
+
+Integrator = Literal["rk4", "rrk4"]
+"""Classical Runge-Kutta, or that with relaxation, which keeps total energy to round-off."""
 
 
 class Case(Protocol):
@@ -80,12 +76,15 @@ class Case(Protocol):
 
 @dataclass(frozen=True)
 class Configuration:
-    """What determines a run besides mesh and case; times in seconds."""
+    """What determines a run besides mesh and case; times in seconds, dissipation in m4/s."""
 
     time_step: float
     snapshot_interval: float
     diagnostics_interval: float
     sampling: Sampling
+    integrator: Integrator
+    anticipation: float
+    dissipation: float
 
 
 class Simulation:
@@ -99,21 +98,35 @@ class Simulation:
         A test case, such as those of `cases`.
     output
         Run directory to create; nothing is written if None. Refused where it holds a run already, unless
-        `overwrite`.
+        `overwrite` or `resume`.
     time_step
         Seconds; by default the largest up to `DEFAULT_COURANT_NUMBER` that divides the shorter output interval.
-        Steps are shortened where they would pass an output time.
+        Steps are shortened where they would pass an output time. Warns with `SetupWarning` where it is unstable.
     snapshot_interval, diagnostics_interval
         Seconds between snapshots and between rows of diagnostics.
+    checkpoint_interval
+        Simulated seconds between checkpoints; results do not depend on it.
     sampling
         "point" where initial thickness and topography are those of the cells' centres, "mean" where they are means
         over the cells.
+    integrator
+        "rk4", the classical method, or "rrk4", whose steps are relaxed to keep total energy (`swe.relaxation`).
+    anticipation
+        Part of the time step by which potential vorticity is anticipated, 0.5 in the literature, so that potential
+        enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
+    dissipation
+        Coefficient of the biharmonic dissipation, m4/s, applied after each step.
+    overwrite
+        Whether to replace a run that the directory holds.
+    resume
+        Whether to go on from the last checkpoint of the run that the directory holds, to the files that the run would
+        have left without a stop, bit for bit; from the start where there is no checkpoint.
 
     Raises
     ------
     SetupError
-        Where an option is out of range, the case gives no sound fields, the initial thickness is not positive, or
-        the directory cannot be used.
+        Where an option is out of range, the case gives no sound fields, the initial thickness is not positive, the
+        directory cannot be used, or the run to go on with was made with another mesh, case or option.
     """
 
     def __init__(
@@ -125,11 +138,18 @@ class Simulation:
         time_step: float | None = None,
         snapshot_interval: float = DEFAULT_SNAPSHOT_INTERVAL,
         diagnostics_interval: float = DEFAULT_DIAGNOSTICS_INTERVAL,
+        checkpoint_interval: float = DEFAULT_CHECKPOINT_INTERVAL,
         sampling: Sampling = "point",
+        integrator: Integrator = "rk4",
+        anticipation: float = 0.0,
+        dissipation: float = 0.0,
         overwrite: bool = False,
+        resume: bool = False,
     ) -> None:
         _require_positive("the snapshot interval", snapshot_interval)
         _require_positive("the diagnostics interval", diagnostics_interval)
+        _require_positive("the checkpoint interval", checkpoint_interval)
+        _require_scheme(case, integrator, anticipation, dissipation)
         self.case = case
         self.mesh = mesh.scaled(case.radius)
         self.model = ShallowWaterModel(
@@ -150,13 +170,19 @@ class Simulation:
         if time_step is None:
             time_step = self._default_time_step(min(snapshot_interval, diagnostics_interval))
         _require_positive("the time step", time_step)
-        self.configuration = Configuration(time_step, snapshot_interval, diagnostics_interval, sampling)
+        self.configuration = Configuration(
+            time_step, snapshot_interval, diagnostics_interval, sampling, integrator, anticipation, dissipation
+        )
+        self.checkpoint_interval = checkpoint_interval
         self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, time_step)
         self.initial_invariants = self.invariants
-        self._directory = None if output is None else Path(output)
-        if self._directory is not None:
-            _check_directory(self._directory, overwrite)
-        self.stepper = FusedRungeKutta(self.model)
+        self.dissipation = BiharmonicDissipation(self.model, dissipation) if dissipation > 0.0 else None
+        self._warn_of_instability()
+        self.recorder = None if output is None else Recorder(self, Path(output), overwrite, resume)
+        self.method = self._build_method()
+        self.stepper = self._build_stepper()
+        if self.recorder is not None:
+            self.recorder.restore(self)
         return_freed_memory()
 
     def _default_time_step(self, interval: float) -> float:
@@ -164,6 +190,33 @@ class Simulation:
         per_second = self.model.courant_number(self.state, 1.0)
         # Where nothing moves, under a prescribed wind of zero, any step does.
         return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
+
+    def _build_method(self) -> FusedRungeKutta | RungeKutta:
+        """The fused method, or its plain twin where the tendency anticipates potential vorticity."""
+        if self.configuration.anticipation == 0.0:
+            return FusedRungeKutta(self.model)
+        self.model.anticipation = self.configuration.anticipation * self.configuration.time_step
+        return RungeKutta(self.model.tendency, self.state)
+
+    def _build_stepper(self) -> Stepper:
+        if self.configuration.integrator == "rrk4":
+            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, self.dissipation)
+        if self.dissipation is not None:
+            return FixedSteps(DissipatingMethod(self.method, self.dissipation))
+        return FixedSteps(self.method)
+
+    def _warn_of_instability(self) -> None:
+        time_step = self.configuration.time_step
+        limit = time_step * STABLE_COURANT_NUMBER / max(self.initial_courant_number, 1e-300)
+        if self.dissipation is not None:
+            limit = min(limit, self.dissipation.largest_time_step)
+        if time_step > limit:
+            warnings.warn(
+                f"a time step of {time_step:g} s is likely to be unstable (Courant number "
+                f"{self.initial_courant_number:.2f}); one of {0.95 * limit:.3g} s would do",
+                SetupWarning,
+                stacklevel=3,
+            )
 
     @property
     def invariants(self) -> Invariants:
@@ -173,50 +226,62 @@ class Simulation:
     def run(self, days: float, progress: bool = True) -> None:
         """Integrate to `days` after the start, writing output on the way.
 
-        Raises `SetupError` where `days` is not later than now, `RunError` where the state ceases to be finite
-        or the thickness to be positive; what was written before stays.
+        Raises `SetupError` where `days` is before now, or not the end of the run that is to go on, `RunError` where the
+        state ceases to be finite or the thickness to be positive, or where output cannot be written, and `RunStopped`,
+        a `KeyboardInterrupt`, at the end of a step after Ctrl-C or SIGTERM. What was written before stays.
         """
         end = days * SECONDS_PER_DAY
-        if not (np.isfinite(end) and end > self.time):
+        complete = self.recorder is not None and self.recorder.resumed and end == self.time
+        if not (np.isfinite(end) and (end > self.time or complete)):
             raise SetupError(
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
             )
+        with (
+            worthwhile_threads(self.mesh.n_cells),
+            stop_requests() as request,
+            ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar,
+        ):
+            if self.recorder is None:
+                self._run_to(end, bar, request)
+                return
+            with self.recorder.recording(self, days):
+                self._run_to(end, bar, request)
+
+    def _run_to(self, end: float, bar: ProgressBar, request: StopRequest) -> None:
         snapshots = Schedule(self.configuration.snapshot_interval, end)
         diagnostics = Schedule(self.configuration.diagnostics_interval, end)
-        with worthwhile_threads(self.mesh.n_cells), ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar:
-            recorder = _Recorder(self, days)
-            try:
-                recorder.begin()
-                while self.time < end:
-                    event = min(snapshots.next_after(self.time), diagnostics.next_after(self.time))
-                    self._advance_to(event, bar)
-                    recorder.record(snapshots.is_due(self.time), diagnostics.is_due(self.time))
-            except BaseException as error:
-                recorder.end("interrupted" if isinstance(error, KeyboardInterrupt) else "failed", str(error))
-                raise
-            recorder.end("completed")
-
-    def _advance_to(self, event: float, bar: ProgressBar) -> None:
-        """Step until `event`, seconds, is reached exactly."""
-        self.stepper.count_taken()  # not those that others took with it
-        most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
-        while self.time < event:
-            step, times = steps_towards(self.time, event, self.configuration.time_step, most)
-            try:
-                self.stepper.advance(self.state, step, len(times))
-            finally:
-                taken = self.stepper.count_taken()
-                self.time = [self.time, *times][taken]
-                self.steps += taken
-            if self.stepper.unsound:
-                raise RunError(
-                    f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
-                    f"the Courant number was {self.initial_courant_number:.2f} at the start: where that is above "
-                    f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
-                )
+        checkpoints = Schedule(self.checkpoint_interval, end)
+        due = checkpoints.next_after(self.time)
+        while self.time < end:
+            event = min(snapshots.next_after(self.time), diagnostics.next_after(self.time))
+            self._advance(event)
+            if self.time == event:
+                self.courant_number = self.model.courant_number(self.state, self.configuration.time_step)
+                bar.show_courant_number(self.courant_number)
+                if self.recorder is not None:
+                    self.recorder.record(self, snapshots.is_due(self.time), diagnostics.is_due(self.time))
             bar.update(self.time / SECONDS_PER_DAY)
-        self.courant_number = self.model.courant_number(self.state, self.configuration.time_step)
-        bar.show_courant_number(self.courant_number)
+            if self.recorder is not None and (self.time >= due or request.signal is not None):
+                self.recorder.checkpoint(self)
+                due = checkpoints.next_after(self.time)
+            request.raise_if_any(
+                self.time / SECONDS_PER_DAY,
+                "nothing is kept, as it has no run directory"
+                if self.recorder is None
+                else "a checkpoint is written, and --resume goes on from there",
+            )
+
+    def _advance(self, event: float) -> None:
+        """Take some steps towards `event`, seconds, which none passes."""
+        most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
+        self.time, taken = self.stepper.advance(self.state, self.time, event, self.configuration.time_step, most)
+        self.steps += taken
+        if self.stepper.unsound:
+            raise RunError(
+                f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
+                f"the Courant number was {self.initial_courant_number:.2f} at the start: where that is above "
+                f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
+            )
 
     def _problem_with_state(self) -> str | None:
         """What is wrong with the state, as the end of a sentence; None if nothing is."""
@@ -234,96 +299,19 @@ class Simulation:
         )
 
 
-class _Recorder:
-    """Writes what a run leaves in its directory; does nothing for a run without one."""
-
-    def __init__(self, simulation: Simulation, days: float) -> None:
-        self.simulation = simulation
-        self.directory = simulation._directory
-        self.days = days
-        self.started = clock.perf_counter()
-        self.history: HistoryFile | None = None
-        self.diagnostics: DiagnosticsFile | None = None
-
-    def begin(self) -> None:
-        """Create the files and write the state at the start; open them again where the run goes on."""
-        if self.directory is None:
-            return
-        simulation = self.simulation
-        try:
-            self.directory.mkdir(parents=True, exist_ok=True)
-        except OSError as error:
-            raise RunError(f"{self.directory} cannot be made: {error.strerror or error}") from error
-        self._write_status("running")
-        starting = simulation.steps == 0
-        if starting:
-            write_mesh(simulation.mesh, self.directory / MESH_FILE, f"mesh of a run of {simulation.case.name}")
-            create_history(self.directory / HISTORY_FILE, simulation.mesh, simulation.model.topography)
-            create_diagnostics(self.directory / DIAGNOSTICS_FILE)
-        self.history = HistoryFile(self.directory / HISTORY_FILE)
-        self.diagnostics = DiagnosticsFile(self.directory / DIAGNOSTICS_FILE)
-        if starting:
-            self.record(True, True)
-
-    def record(self, snapshot: bool, diagnostics: bool) -> None:
-        """Write the present state to the files that are due."""
-        simulation = self.simulation
-        if self.history is None or self.diagnostics is None or not (snapshot or diagnostics):
-            return
-        model, state = simulation.model, simulation.state
-        diagnosis = model.diagnose(state)
-        if snapshot:
-            self.history.append(simulation.time, model, state, diagnosis)
-        if diagnostics:
-            invariants = measure_invariants(model, state, diagnosis)
-            self.diagnostics.append(
-                simulation.time,
-                invariants,
-                relative_changes(simulation.initial_invariants, invariants),
-                simulation.courant_number,
-                float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
-            )
-
-    def end(self, status: str, reason: str = "") -> None:
-        """Close the files and write the final status."""
-        for file in (self.history, self.diagnostics):
-            if file is not None:
-                file.close()
-        if self.directory is not None and self.directory.is_dir():
-            self._write_status(status, reason)
-
-    def _write_status(self, status: str, reason: str = "") -> None:
-        simulation = self.simulation
-        assert self.directory is not None
-        write_record(
-            self.directory,
-            {
-                "status": status,
-                "reason": reason,
-                "case": simulation.case.name,
-                "parameters": simulation.case.parameters(),
-                "configuration": asdict(simulation.configuration),
-                "days": self.days,
-                "day_reached": simulation.time / SECONDS_PER_DAY,
-                "steps": simulation.steps,
-                "wall_seconds": clock.perf_counter() - self.started,
-                "threads": numba.get_num_threads(),
-                "cells": simulation.mesh.n_cells,
-                "mesh_hash": mesh_hash(simulation.mesh),
-                "versions": package_versions(),
-            },
-        )
-
-
 def _require_positive(what: str, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
         raise SetupError(f"{what} is {value:g} s; it must be positive")
 
 
-def _check_directory(directory: Path, overwrite: bool) -> None:
-    """Raise `SetupError` where a run directory holds a run already or cannot be made or written to."""
-    if (directory / RECORD_FILE).exists() and not overwrite:
-        raise SetupError(f"{directory} holds a run already; choose another directory, or overwrite it (--force)")
-    existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
-    if not existing.is_dir() or not os.access(existing, os.W_OK):
-        raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
+def _require_scheme(case: Case, integrator: str, anticipation: float, dissipation: float) -> None:
+    """Raise `SetupError` where these are out of range or do not go with the case."""
+    if integrator not in get_args(Integrator):
+        raise SetupError(f"the integrator is {integrator!r}; it must be one of {', '.join(get_args(Integrator))}")
+    for what, value in (("the anticipation", anticipation), ("the dissipation", dissipation)):
+        if not (np.isfinite(value) and value >= 0.0):
+            raise SetupError(f"{what} is {value:g}; it must not be negative")
+    if case.prescribed_wind and (integrator != "rk4" or anticipation > 0.0 or dissipation > 0.0):
+        raise SetupError(
+            f"the wind of {case.name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
+        )

@@ -275,7 +275,7 @@ def _stage_of_tile(
     last: bool,
     unsound: Index,
 ) -> None:
-    """Tendency and update of one tile; see `_stage`."""
+    """Tendency and update of one tile; see `stage`."""
     _tendency_of_tile(tile, thread, tiles, scratch, gravity, moving, at[0], at[1])
     dh, du = scratch[4][thread], scratch[5][thread]
     cell, next_cell, edge, next_edge = tiles[0][tile], tiles[0][tile + 1], tiles[1][tile], tiles[1][tile + 1]
@@ -306,7 +306,7 @@ def _use_widest_vectors(_typing_context: Any) -> Any:
 
 
 @compiled
-def _stage(
+def stage(
     tiles: TileArrays,
     scratch: Arrays,
     gravity: float,
@@ -359,22 +359,21 @@ def rk4_steps(
     fourth: Arrays,
     time_step: float,
     count: int,
-    taken: Index,
     unsound: Index,
-) -> None:
+) -> int:
     """Advance y, a pair of thickness and normal velocity in the order of the tiles, by steps of classical RK4.
 
-    `taken` (1,) counts the steps: `count`, or less where a step left unsound values, thicknesses that are not positive
-    or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
+    Gives the number of steps taken: `count`, or less where a step left unsound values, thicknesses that are not
+    positive or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
     `fourth` are left with the states at which the stages after the first took their slopes. Where not `moving`, the
     velocity stays as it is.
     """
     dt = time_step
-    for _ in range(count):
-        _stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
-        _stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
-        _stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
-        _stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
-        taken[0] += 1
+    for taken in range(1, count + 1):
+        stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
+        stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
+        stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
+        stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
         if np.any(unsound > 0):
-            return
+            return taken
+    return count

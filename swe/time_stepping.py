@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from swe.kernels import add_scaled
+from swe.kernels import add_scaled, count_unsound
 from swe.state import State
 
 Tendency = Callable[[State, State], None]
@@ -26,13 +26,26 @@ RK4 = ButcherTableau(
 
 
 class RungeKutta:
-    """Advances a state in place with an explicit method; the slopes are allocated once."""
+    """Advances a state in place with an explicit method; the slopes are allocated once.
+
+    `unsound` is the number of thicknesses that are not positive and of values that are not finite after `advance`.
+    """
 
     def __init__(self, tendency: Tendency, state: State, tableau: ButcherTableau = RK4) -> None:
         self.tendency = tendency
         self.tableau = tableau
+        self.unsound = 0
         self._stage = state.empty_like()
         self._slopes = [state.empty_like() for _ in tableau.weights]
+
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+        """Take up to `steps` steps, fewer where one leaves `unsound` values; give their number."""
+        for taken in range(1, steps + 1):
+            self.step(state, time_step)
+            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            if self.unsound:
+                return taken
+        return steps
 
     def step(self, state: State, time_step: float) -> None:
         """Advance `state` by `time_step` seconds."""

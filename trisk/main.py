@@ -6,7 +6,7 @@ import sys
 import warnings
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -23,7 +23,8 @@ app = typer.Typer(
 
 app.add_typer(study.app, name="study")
 
-RUN_FAILED, BAD_INPUT = 1, 2
+RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
+"""Exit codes; the last is that of shells, to which the number of the signal is added."""
 
 Recompute = Annotated[
     bool,
@@ -152,29 +153,62 @@ def run(
     ] = None,
     snapshot_hours: Annotated[float, typer.Option("--snapshot-hours", help="Hours between snapshots.")] = 24.0,
     diagnostics_hours: Annotated[float, typer.Option("--diagnostics-hours", help="Hours between diagnostics.")] = 6.0,
+    checkpoint_hours: Annotated[
+        float, typer.Option("--checkpoint-hours", help="Simulated hours between checkpoints.")
+    ] = 24.0,
+    integrator: Annotated[
+        Literal["rk4", "rrk4"],
+        typer.Option("--integrator", help="rk4, or rrk4, which scales its steps to keep total energy to round-off."),
+    ] = "rk4",
+    anticipation: Annotated[
+        float,
+        typer.Option(
+            "--apvm", help="Part of a step by which potential vorticity is anticipated (APVM), 0.5 in the literature."
+        ),
+    ] = 0.0,
+    dissipation: Annotated[
+        float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
+    ] = 0.0,
     force: Annotated[bool, typer.Option("--force", help="Replace a run that the directory holds.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on from the last checkpoint in the directory, on its mesh.")
+    ] = False,
     recompute_metrics: Recompute = False,
     quiet: Quiet = False,
 ) -> None:
-    """Run a test case and write snapshots and diagnostics."""
+    """Run a test case and write snapshots and diagnostics.
+
+    Ctrl-C and SIGTERM stop it with a checkpoint.
+    """
     from cases import find_case
     from cases.parameters import split_settings
     from swe import Simulation
-    from trisk.meshes import chosen_mesh
+    from swe.errors import RunStopped
+    from trisk.meshes import chosen_mesh, mesh_of_run
     from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
+    known = mesh_of_run(output, cells) if resume and mesh_file is None else None
     simulation = Simulation(
-        chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
+        known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
         chosen,
         output,
         time_step=time_step,
         snapshot_interval=3600.0 * snapshot_hours,
         diagnostics_interval=3600.0 * diagnostics_hours,
+        checkpoint_interval=3600.0 * checkpoint_hours,
         sampling="mean" if means else "point",
+        integrator=integrator,
+        anticipation=anticipation,
+        dissipation=dissipation,
         overwrite=force,
+        resume=resume,
     )
-    simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
+    try:
+        simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
+    except RunStopped as stop:
+        typer.echo(f"{stop}", err=True)
+        raise typer.Exit(STOPPED + stop.signal) from stop
     if not quiet:
         print_run(output)
 

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import typer
 
-from mesh import VoronoiMesh, read_mesh, scvt_mesh
+from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh
 from mesh.build import UNIFORM_TOLERANCE
+from swe.output import MESH_FILE
 from trisk.report import convergence_bar
 
 
@@ -22,3 +23,17 @@ def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bo
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     with convergence_bar(UNIFORM_TOLERANCE, not quiet) as show:
         return scvt_mesh(cells, callback=show)
+
+
+def mesh_of_run(directory: Path, cells: int | None) -> VoronoiMesh | None:
+    """The mesh of a run that the directory holds, None where there is none; so a run can go on without being told it.
+
+    Raises `MeshError` where it has another number of cells than `cells`, if that is given.
+    """
+    path = directory / MESH_FILE
+    if not path.is_file():
+        return None
+    mesh = read_mesh(path)
+    if cells is not None and cells != mesh.n_cells:
+        raise MeshError(f"{path} has {mesh.n_cells} cells, not {cells}; give the same options, or another directory")
+    return mesh

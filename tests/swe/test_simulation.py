@@ -63,7 +63,7 @@ def test_result_does_not_depend_on_the_number_of_threads(larger_mesh: VoronoiMes
         numba.set_num_threads(threads)
         try:
             for _ in range(20):
-                simulation.stepper.advance(simulation.state, 600.0)
+                simulation.method.advance(simulation.state, 600.0)
         finally:
             numba.set_num_threads(numba.config.NUMBA_NUM_THREADS)
         states.append(simulation.state)

@@ -1,0 +1,253 @@
+"""What a run leaves in its directory, and how it goes on from there."""
+
+import hashlib
+import os
+import time as clock
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numba
+import numpy as np
+
+from mesh.io import mesh_hash, write_mesh
+from swe.budgets import measure_rates
+from swe.checkpoint import Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import RunError, SetupError, SetupWarning
+from swe.invariants import measure_invariants, relative_changes
+from swe.output import (
+    DIAGNOSTICS_FILE,
+    HISTORY_FILE,
+    MESH_FILE,
+    RECORD_FILE,
+    DiagnosticsFile,
+    HistoryFile,
+    create_diagnostics,
+    create_history,
+    package_versions,
+    read_record,
+    write_record,
+)
+
+if TYPE_CHECKING:
+    from swe.simulation import Simulation
+
+
+class Recorder:
+    """Writes snapshots, diagnostics, checkpoints and the record of a run.
+
+    Raises `SetupError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
+    go on, or one to go on with that was made otherwise.
+    """
+
+    def __init__(self, simulation: "Simulation", directory: Path, overwrite: bool, resume: bool) -> None:
+        self.directory = directory
+        self.resumed = False
+        self._days_before: float | None = None
+        self._seconds_before = 0.0
+        self._description = _description(simulation)
+        self._versions = package_versions()
+        self._history: HistoryFile | None = None
+        self._diagnostics: DiagnosticsFile | None = None
+        self._begun = clock.perf_counter()
+        self._written: tuple[int, int] | None = None
+        _require_usable(directory)
+        if overwrite and resume:
+            raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
+        before = read_record(directory) if resume or not overwrite else None
+        if before is None:
+            return
+        if not resume:
+            raise SetupError(
+                f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "
+                "(--force)"
+            )
+        self._require_same(before)
+        self.resumed = True
+
+    def _require_same(self, before: dict[str, object]) -> None:
+        """Raise `SetupError` where the run of an earlier record was made otherwise; take over its days and time."""
+        for name, now in self._description.items():
+            then = before.get(name)
+            if then != now:
+                raise SetupError(f"{self.directory} holds {_difference(name, then, now)}; {HOW_TO_GO_ON}")
+        if before.get("versions") != self._versions:
+            warnings.warn(
+                f"{self.directory} was begun with other versions of packages; its files may differ in the last digits",
+                SetupWarning,
+                stacklevel=4,
+            )
+        days, seconds = before.get("days"), before.get("wall_seconds")
+        if not (isinstance(days, float | int) and isinstance(seconds, float | int)):
+            raise SetupError(f"{self.directory / RECORD_FILE} does not tell the days of the run; start anew (--force)")
+        self._days_before, self._seconds_before = float(days), float(seconds)
+
+    def restore(self, simulation: "Simulation") -> None:
+        """Put the run to be gone on with, if any, back to where its last checkpoint is."""
+        checkpoint = last_checkpoint(self.directory) if self.resumed else None
+        if checkpoint is None:
+            return
+        simulation.state.thickness[:] = checkpoint.state.thickness
+        simulation.state.normal_velocity[:] = checkpoint.state.normal_velocity
+        simulation.time, simulation.steps = checkpoint.time, checkpoint.steps
+        self._written = checkpoint.snapshots, checkpoint.rows
+
+    @contextmanager
+    def recording(self, simulation: "Simulation", days: float) -> Iterator[None]:
+        """Keep the files open in the course of a run to `days`, and write how it ended."""
+        if self._days_before is not None and days != self._days_before:
+            raise SetupError(f"{self.directory} holds {_difference('days', self._days_before, days)}; {HOW_TO_GO_ON}")
+        self._days_before = None
+        self._begun = clock.perf_counter()
+        try:
+            self._open(simulation, days)
+            yield
+            self._close()
+        except BaseException as error:
+            stopped = isinstance(error, KeyboardInterrupt)
+            self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
+            raise
+        self._end(simulation, days, "completed")
+
+    def _open(self, simulation: "Simulation", days: float) -> None:
+        """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
+        self._make_directory()
+        starting = simulation.steps == 0
+        if starting:
+            remove_checkpoints(self.directory)
+        self._write_status(simulation, days, "running")
+        history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
+        if starting:
+            write_mesh(simulation.mesh, self.directory / MESH_FILE, f"mesh of a run of {simulation.case.name}")
+            create_history(history, simulation.mesh, simulation.model.topography)
+            create_diagnostics(diagnostics)
+        snapshots, rows = self._written or (None, None)
+        self._history, self._diagnostics = HistoryFile(history, snapshots), DiagnosticsFile(diagnostics, rows)
+        self._written = None
+        self._days = days
+        if starting:
+            self.record(simulation, True, True)
+
+    def _make_directory(self) -> None:
+        try:
+            self.directory.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise RunError(f"{self.directory} cannot be made: {error.strerror or error}") from error
+
+    def record(self, simulation: "Simulation", snapshot: bool, diagnostics: bool) -> None:
+        """Write the present state to the files that are due."""
+        assert self._history is not None
+        assert self._diagnostics is not None
+        if not (snapshot or diagnostics):
+            return
+        model, state = simulation.model, simulation.state
+        diagnosis = model.diagnose(state)
+        if snapshot:
+            self._history.append(simulation.time, model, state, diagnosis)
+        if diagnostics:
+            tendency = state.empty_like()
+            simulation.method.tendency(state, tendency)
+            invariants = measure_invariants(model, state, diagnosis)
+            self._diagnostics.append(
+                simulation.time,
+                invariants,
+                relative_changes(simulation.initial_invariants, invariants),
+                measure_rates(model, state, diagnosis, tendency, simulation.dissipation),
+                simulation.courant_number,
+                float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
+            )
+
+    def checkpoint(self, simulation: "Simulation") -> None:
+        """Write a checkpoint, after all that comes before it."""
+        assert self._history is not None
+        assert self._diagnostics is not None
+        self._diagnostics.flush()
+        write_checkpoint(
+            self.directory,
+            Checkpoint(simulation.state, simulation.time, simulation.steps, self._history.rows, self._diagnostics.rows),
+        )
+        self._write_status(simulation, self._days, "running")
+
+    def _close(self) -> None:
+        for file in (self._history, self._diagnostics):
+            if file is not None:
+                file.close()
+        self._history = self._diagnostics = None
+
+    def _end(self, simulation: "Simulation", days: float, status: str, reason: str = "") -> None:
+        """Close what is open and write the final status, however little of it the disk takes."""
+        try:
+            self._close()
+        except RunError:
+            if status == "completed":
+                raise
+        if self.directory.is_dir():
+            self._write_status(simulation, days, status, reason)
+
+    def _write_status(self, simulation: "Simulation", days: float, status: str, reason: str = "") -> None:
+        record = {
+            "status": status,
+            "reason": reason,
+            "days": days,
+            "day_reached": simulation.time / SECONDS_PER_DAY,
+            "steps": simulation.steps,
+            "wall_seconds": self._seconds_before + clock.perf_counter() - self._begun,
+            "threads": numba.get_num_threads(),
+            "cells": simulation.mesh.n_cells,
+            **self._description,
+            "versions": self._versions,
+        }
+        try:
+            write_record(self.directory, record)
+        except OSError as error:
+            if status == "failed":
+                return  # the error that comes first is the one to tell
+            raise RunError(
+                f"{self.directory / RECORD_FILE} cannot be written ({error.strerror or error}); is the disk full?"
+            ) from error
+
+
+HOW_TO_GO_ON = "give the same options, or another directory"
+
+
+def _description(simulation: "Simulation") -> dict[str, object]:
+    """What a run must have in common with the one that it goes on from, as the record has it."""
+    return {
+        "case": simulation.case.name,
+        "parameters": simulation.case.parameters(),
+        "configuration": asdict(simulation.configuration),
+        "mesh_hash": mesh_hash(simulation.mesh),
+        "start_hash": _start_hash(simulation),
+    }
+
+
+def _start_hash(simulation: "Simulation") -> str:
+    """SHA-256, in hexadecimal, of the initial state, the topography and the Coriolis parameter."""
+    digest = hashlib.sha256(np.float64(simulation.model.gravity).tobytes())
+    for values in (*vars(simulation.state).values(), simulation.model.topography, simulation.model.coriolis):
+        digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
+
+
+def _difference(name: str, then: object, now: object) -> str:
+    """What is different between the run that a directory holds and the one that is asked for, as part of a sentence."""
+    if isinstance(then, dict) and isinstance(now, dict):
+        for key in (*now, *then):
+            if then.get(key) != now.get(key):
+                return _difference(key, then.get(key), now.get(key))
+    if name == "mesh_hash":
+        return "a run on another mesh"
+    if name == "start_hash":
+        return "a run of a case with another start, topography or rotation"
+    return f"a run with {name.replace('_', ' ')} = {then}, not {now}"
+
+
+def _require_usable(directory: Path) -> None:
+    """Raise `SetupError` where a run directory cannot be made or written to."""
+    existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")

@@ -1,0 +1,44 @@
+"""Requests to stop that a run heeds at the end of a step."""
+
+import signal
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from types import FrameType
+
+from swe.errors import RunStopped
+
+HEEDED = (signal.SIGINT, signal.SIGTERM)
+
+
+class StopRequest:
+    """Whether, and by which signal, the run was asked to stop."""
+
+    def __init__(self) -> None:
+        self.signal: signal.Signals | None = None
+
+    def note(self, number: int, _frame: FrameType | None) -> None:
+        """Take note of a signal; at the second one, stop at once."""
+        if self.signal is not None:
+            raise KeyboardInterrupt
+        self.signal = signal.Signals(number)
+
+    def raise_if_any(self, day: float, whereabouts: str) -> None:
+        """Raise `RunStopped` if the run was asked to stop."""
+        if self.signal is not None:
+            raise RunStopped(f"stopped by {self.signal.name} at day {day:.3f}; {whereabouts}", self.signal)
+
+
+@contextmanager
+def stop_requests() -> Iterator[StopRequest]:
+    """Note Ctrl-C and SIGTERM in the course of the context, where this is the main thread; nothing elsewhere."""
+    request = StopRequest()
+    if threading.current_thread() is not threading.main_thread():
+        yield request
+        return
+    before = [(number, signal.signal(number, request.note)) for number in HEEDED]
+    try:
+        yield request
+    finally:
+        for number, handler in before:
+            signal.signal(number, handler)
