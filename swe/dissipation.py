@@ -11,7 +11,8 @@ class BiharmonicDissipation:
     """Applies the dissipation with the `coefficient` nu, m4/s, after each step of the other terms.
 
     On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u) takes
-    energy away, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity stay.
+    energy away, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity stay. Like its parts, curl
+    and gradient, lap is consistent in the mean over neighbours, not at every edge.
     """
 
     def __init__(self, model: ShallowWaterModel, coefficient: float) -> None:
@@ -26,8 +27,8 @@ class BiharmonicDissipation:
 
     def acceleration(self, velocity: Array) -> Array:
         """-nu lap(lap u) at edges (n_edges,), m/s2; the array is used again by the next call."""
-        self._laplacian(velocity, self._once)
-        self._laplacian(self._once, self._twice)
+        self.laplacian(velocity, self._once)
+        self.laplacian(self._once, self._twice)
         self._twice *= -self.coefficient
         return self._twice
 
@@ -49,7 +50,8 @@ class BiharmonicDissipation:
         bound = 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
         return 2.0 / (self.coefficient * bound**2)
 
-    def _laplacian(self, velocity: Array, result: Array) -> None:
+    def laplacian(self, velocity: Array, result: Array) -> None:
+        """Write lap u at edges (n_edges,), 1/(m s), into `result`."""
         mesh = self._mesh
         kernels.thickness_tendency(
             velocity,

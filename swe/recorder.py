@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numba
 import numpy as np
 
+from mesh.files import remove_leftovers
 from mesh.io import mesh_hash, write_mesh
 from swe.budgets import measure_rates
 from swe.checkpoint import Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
@@ -55,19 +56,10 @@ class Recorder:
         self._diagnostics: DiagnosticsFile | None = None
         self._begun = clock.perf_counter()
         self._written: tuple[int, int] | None = None
-        _require_usable(directory)
-        if overwrite and resume:
-            raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
-        before = read_record(directory) if resume or not overwrite else None
-        if before is None:
-            return
-        if not resume:
-            raise SetupError(
-                f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "
-                "(--force)"
-            )
-        self._require_same(before)
-        self.resumed = True
+        before = run_to_go_on_with(directory, overwrite, resume)
+        if before is not None:
+            self._require_same(before)
+            self.resumed = True
 
     def _require_same(self, before: dict[str, object]) -> None:
         """Raise `SetupError` where the run of an earlier record was made otherwise; take over its days and time."""
@@ -96,11 +88,14 @@ class Recorder:
         simulation.time, simulation.steps = checkpoint.time, checkpoint.steps
         self._written = checkpoint.snapshots, checkpoint.rows
 
+    def require_days(self, days: float) -> None:
+        """Raise `SetupError` where the run to be gone on with, if any, was to last for another number of days."""
+        if self._days_before is not None and days != self._days_before:
+            raise SetupError(f"{self.directory} holds {_difference('days', self._days_before, days)}; {HOW_TO_GO_ON}")
+
     @contextmanager
     def recording(self, simulation: "Simulation", days: float) -> Iterator[None]:
         """Keep the files open in the course of a run to `days`, and write how it ended."""
-        if self._days_before is not None and days != self._days_before:
-            raise SetupError(f"{self.directory} holds {_difference('days', self._days_before, days)}; {HOW_TO_GO_ON}")
         self._days_before = None
         self._begun = clock.perf_counter()
         try:
@@ -116,6 +111,7 @@ class Recorder:
     def _open(self, simulation: "Simulation", days: float) -> None:
         """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
         self._make_directory()
+        remove_leftovers(self.directory)
         starting = simulation.steps == 0
         if starting:
             remove_checkpoints(self.directory)
@@ -217,10 +213,10 @@ HOW_TO_GO_ON = "give the same options, or another directory"
 def _description(simulation: "Simulation") -> dict[str, object]:
     """What a run must have in common with the one that it goes on from, as the record has it."""
     return {
+        "mesh_hash": mesh_hash(simulation.mesh),
         "case": simulation.case.name,
         "parameters": simulation.case.parameters(),
         "configuration": asdict(simulation.configuration),
-        "mesh_hash": mesh_hash(simulation.mesh),
         "start_hash": _start_hash(simulation),
     }
 
@@ -246,8 +242,20 @@ def _difference(name: str, then: object, now: object) -> str:
     return f"a run with {name.replace('_', ' ')} = {then}, not {now}"
 
 
-def _require_usable(directory: Path) -> None:
-    """Raise `SetupError` where a run directory cannot be made or written to."""
+def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:
+    """The record of the run in `directory` where it is to be gone on with; None where a run begins there.
+
+    Raises `SetupError` where the directory cannot be used, or holds a run that is neither to be replaced nor to go on.
+    """
     existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
         raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
+    if overwrite and resume:
+        raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
+    before = None if overwrite else read_record(directory)
+    if before is not None and not resume:
+        raise SetupError(
+            f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "
+            "(--force)"
+        )
+    return before

@@ -231,6 +231,8 @@ class Simulation:
         a `KeyboardInterrupt`, at the end of a step after Ctrl-C or SIGTERM. What was written before stays.
         """
         end = days * SECONDS_PER_DAY
+        if self.recorder is not None:
+            self.recorder.require_days(days)
         complete = self.recorder is not None and self.recorder.resumed and end == self.time
         if not (np.isfinite(end) and (end > self.time or complete)):
             raise SetupError(

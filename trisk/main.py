@@ -184,10 +184,12 @@ def run(
     from cases.parameters import split_settings
     from swe import Simulation
     from swe.errors import RunStopped
+    from swe.recorder import run_to_go_on_with
     from trisk.meshes import chosen_mesh, mesh_of_run
     from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
+    run_to_go_on_with(output, force, resume)  # before a mesh is made for nothing
     known = mesh_of_run(output, cells) if resume and mesh_file is None else None
     simulation = Simulation(
         known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
