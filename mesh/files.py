@@ -1,10 +1,35 @@
-"""Files that appear under their name only when they are whole."""
+"""Files that appear under their name only when they are whole, and folders that one program at a time writes to."""
 
 import os
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+
+
+@contextmanager
+def held(folder: Path) -> Iterator[bool]:
+    """Hold a folder as long as the context lasts; gives False where another program holds it.
+
+    A program that dies lets go. Where the system knows no such locks nobody is kept out.
+    """
+    try:
+        import fcntl
+    except ImportError:
+        yield True
+        return
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        free = True
+    except BlockingIOError:
+        free = False
+    except OSError:
+        free = True
+    try:
+        yield free
+    finally:
+        os.close(descriptor)
 
 
 def remove_leftovers(folder: Path) -> None:

@@ -109,13 +109,13 @@ class _TimeFile:
         self._path = path
         self._failed = False
         try:
-            self._file = netCDF4.Dataset(path, "r+")
-        except (OSError, RuntimeError) as error:
+            self._file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+            present = len(self._file.dimensions["Time"])
+        except (OSError, RuntimeError, KeyError) as error:
             raise RunError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
         # Values are written as they are; looking for masks and scales takes as long as writing them.
         self._file.set_auto_maskandscale(False)
         self._file.set_fill_off()
-        present = len(self._file.dimensions["Time"])
         if rows is not None and rows > present:
             raise RunError(f"{path} has {present} rows, but its run had written {rows}; start anew (--force)")
         self.rows = present if rows is None else rows
@@ -216,16 +216,14 @@ class DiagnosticsFile(_TimeFile):
 
 
 def read_record(directory: Path) -> dict[str, object] | None:
-    """What `run.json` holds, None where there is none; raise `SetupError` where it is not the record of a run."""
+    """What `run.json` holds, None where there is none; raise `SetupError` where it is no record of a run."""
     path = directory / RECORD_FILE
     try:
         record = json.loads(path.read_text())
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, ValueError) as error:
-        raise SetupError(
-            f"{path} is not the record of a run ({error}); remove it or choose another directory"
-        ) from error
+        raise SetupError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
     if not isinstance(record, dict):
         raise SetupError(f"{path} is no record of a run; remove it or choose another directory")
     return record

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 import numba
 import numpy as np
 
-from mesh.files import remove_leftovers
+from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
 from swe.budgets import measure_rates
 from swe.checkpoint import Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
@@ -98,19 +98,22 @@ class Recorder:
         """Keep the files open in the course of a run to `days`, and write how it ended."""
         self._days_before = None
         self._begun = clock.perf_counter()
-        try:
-            self._open(simulation, days)
-            yield
-            self._close()
-        except BaseException as error:
-            stopped = isinstance(error, KeyboardInterrupt)
-            self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
-            raise
-        self._end(simulation, days, "completed")
+        self._make_directory()
+        with held(self.directory) as free:
+            if not free:
+                raise SetupError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
+            try:
+                self._open(simulation, days)
+                yield
+                self._close()
+            except BaseException as error:
+                stopped = isinstance(error, KeyboardInterrupt)
+                self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
+                raise
+            self._end(simulation, days, "completed")
 
     def _open(self, simulation: "Simulation", days: float) -> None:
         """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
-        self._make_directory()
         remove_leftovers(self.directory)
         starting = simulation.steps == 0
         if starting:
@@ -239,7 +242,11 @@ def _difference(name: str, then: object, now: object) -> str:
         return "a run on another mesh"
     if name == "start_hash":
         return "a run of a case with another start, topography or rotation"
-    return f"a run with {name.replace('_', ' ')} = {then}, not {now}"
+    return f"a run with {name.replace('_', ' ')} = {_shown(then)}, not {_shown(now)}"
+
+
+def _shown(value: object) -> str:
+    return f"{value:.15g}" if isinstance(value, float | int) else str(value)
 
 
 def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:

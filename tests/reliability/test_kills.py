@@ -1,0 +1,18 @@
+"""A few kills; `python tests/reliability/kill_runs.py 20` makes as many as one likes."""
+
+import random
+import subprocess
+import sys
+from pathlib import Path
+
+from kill_runs import kill_and_resume, time_of_run
+
+
+def test_killed_runs_go_on_to_equal_files(tmp_path: Path) -> None:
+    mesh = tmp_path / "mesh.nc"
+    subprocess.run([sys.executable, "-m", "trisk", "mesh", "--cells", "642", "-o", str(mesh), "-q"], check=True)
+    seconds = time_of_run(mesh, tmp_path / "whole")
+    choice = random.Random(3)
+    kills = [*kill_and_resume(mesh, tmp_path / "whole", tmp_path / "first", seconds, choice)]
+    kills += kill_and_resume(mesh, tmp_path / "whole", tmp_path / "second", seconds, choice)
+    assert len(kills) >= 2

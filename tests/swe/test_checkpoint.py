@@ -1,0 +1,190 @@
+"""Checkpoints are whole or not there, and a run that goes on leaves what one without a stop leaves."""
+
+import json
+import os
+import signal
+import threading
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cases import Williamson2, Williamson5
+from mesh import VoronoiMesh, scvt_mesh
+from swe import RunError, Simulation, State
+from swe.checkpoint import Checkpoint, checkpoint_paths, last_checkpoint, write_checkpoint
+from swe.errors import RunStopped, SetupError, SetupWarning
+
+OPTIONS = {"time_step": 1000.0, "snapshot_interval": 7200.0, "diagnostics_interval": 3600.0}
+
+
+def same_files(one: Path, other: Path) -> bool:
+    return all((one / name).read_bytes() == (other / name).read_bytes() for name in ("history.nc", "diagnostics.nc"))
+
+
+def run_and_stop(mesh: VoronoiMesh, folder: Path, **options: object) -> None:
+    """Run for a long time, and ask to stop a little later."""
+    simulation = Simulation(mesh, Williamson5(), folder, **{**OPTIONS, **options})
+    timer = threading.Timer(0.7, os.kill, (os.getpid(), signal.SIGTERM))
+    timer.start()
+    with pytest.raises(RunStopped, match=r"stopped by SIGTERM at day .*; a checkpoint is written"):
+        simulation.run(days=30, progress=False)
+
+
+def test_round_trip(tmp_path: Path) -> None:
+    state = State(np.array([1.0, 2.0 / 3.0]), np.array([-0.1, np.pi, 5e-324]))
+    for steps in (9, 10, 11):
+        write_checkpoint(tmp_path, Checkpoint(state, 0.1 * steps, steps, 3, 4))
+    assert [path.name for path in checkpoint_paths(tmp_path)] == [
+        *("checkpoint.0000000010.npz", "checkpoint.0000000011.npz")
+    ]
+    found = last_checkpoint(tmp_path)
+    assert found is not None
+    assert (found.time, found.steps, found.snapshots, found.rows) == (0.1 * 11, 11, 3, 4)
+    np.testing.assert_array_equal(found.state.thickness, state.thickness)
+    np.testing.assert_array_equal(found.state.normal_velocity, state.normal_velocity)
+
+
+@pytest.mark.parametrize("damage", [lambda data: data[:100], lambda data: data[:-60], lambda data: b"", None])
+def test_a_damaged_checkpoint_gives_way_to_the_one_before(tmp_path: Path, damage) -> None:
+    state = State(np.ones(50), np.ones(70))
+    for steps in (1, 2):
+        write_checkpoint(tmp_path, Checkpoint(state, float(steps), steps, 1, 1))
+    path = checkpoint_paths(tmp_path)[1]
+    data = bytearray(path.read_bytes())
+    if damage is None:
+        data[300] ^= 1
+    path.write_bytes(data if damage is None else damage(data))
+    with pytest.warns(SetupWarning, match=r"checkpoint.0000000002.npz is damaged .* going back to an earlier one"):
+        found = last_checkpoint(tmp_path)
+    assert found is not None
+    assert found.steps == 1
+    assert last_checkpoint(tmp_path / "elsewhere") is None
+
+
+@pytest.mark.parametrize("integrator", ["rk4", "rrk4"])
+def test_a_stopped_run_goes_on_to_the_same_files(
+    icosahedral_mesh: VoronoiMesh, tmp_path: Path, integrator: str
+) -> None:
+    whole = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "whole", integrator=integrator, **OPTIONS)
+    whole.run(days=30, progress=False)
+    run_and_stop(icosahedral_mesh, tmp_path / "parts", integrator=integrator)
+    record = json.loads((tmp_path / "parts" / "run.json").read_text())
+    assert record["status"] == "interrupted"
+    assert 0 < record["day_reached"] < 30
+    assert not same_files(tmp_path / "whole", tmp_path / "parts")
+    again = Simulation(
+        icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS
+    )
+    assert again.steps == record["steps"]
+    again.run(days=30, progress=False)
+    assert same_files(tmp_path / "whole", tmp_path / "parts")
+    np.testing.assert_array_equal(again.state.normal_velocity, whole.state.normal_velocity)
+    after = json.loads((tmp_path / "parts" / "run.json").read_text())
+    assert after["steps"] == whole.steps
+    assert after["wall_seconds"] > record["wall_seconds"]
+    assert len(checkpoint_paths(tmp_path / "parts")) == 2
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS).run(
+        days=30, progress=False
+    )
+    assert same_files(tmp_path / "whole", tmp_path / "parts")
+
+
+def test_without_a_checkpoint_a_run_begins_again(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    for name in ("whole", "parts"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / name, resume=True).run(days=1, progress=False)
+    for path in checkpoint_paths(tmp_path / "parts"):
+        path.unlink()
+    (tmp_path / "parts" / "history.nc").write_bytes(b"half")
+    again = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", resume=True)
+    assert again.steps == 0
+    again.run(days=1, progress=False)
+    assert same_files(tmp_path / "whole", tmp_path / "parts")
+
+
+def test_files_that_lost_rows_are_refused(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a").run(days=1, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b").run(days=0.3, progress=False)
+    (tmp_path / "a" / "diagnostics.nc").write_bytes((tmp_path / "b" / "diagnostics.nc").read_bytes())
+    with pytest.raises(RunError, match=r"diagnostics.nc has 3 rows, but its run had written 5"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a", resume=True).run(days=1, progress=False)
+    (tmp_path / "b" / "history.nc").unlink()
+    with pytest.raises(RunError, match=r"history.nc cannot be opened to go on"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(days=0.3, progress=False)
+
+
+def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    run_and_stop(icosahedral_mesh, tmp_path)
+    before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+    def resumed(mesh: VoronoiMesh = icosahedral_mesh, case: object = None, **options: object) -> Simulation:
+        return Simulation(mesh, case or Williamson5(), tmp_path, resume=True, **{**OPTIONS, **options})
+
+    with pytest.raises(SetupError, match="holds a run on another mesh; give the same options"):
+        resumed(mesh=scvt_mesh(162))
+    with pytest.raises(SetupError, match="holds a run with case = williamson5, not williamson2"):
+        resumed(case=Williamson2())
+    with pytest.raises(SetupError, match=r"holds a run with wind speed = 20, not 21"):
+        resumed(case=Williamson5(wind_speed=21.0))
+    for name, value in (
+        *(("time_step", 900.0), ("snapshot_interval", 3600.0), ("diagnostics_interval", 7200.0)),
+        *(("integrator", "rrk4"), ("anticipation", 0.5), ("dissipation", 1e14), ("sampling", "mean")),
+    ):
+        with pytest.raises(SetupError, match=f"holds a run with {name.replace('_', ' ')} = .*, not .*; give the same"):
+            resumed(**{name: value})
+    with pytest.raises(SetupError, match=r"holds a run with days = 30, not 31"):
+        resumed().run(days=31)
+    with pytest.raises(SetupError, match="leave out --force or --resume"):
+        resumed(overwrite=True)
+
+    class Moved(Williamson5):
+        def coriolis_on(self, mesh: VoronoiMesh) -> np.ndarray:
+            return 1.001 * super().coriolis_on(mesh)
+
+    with pytest.raises(SetupError, match="a run of a case with another start, topography or rotation"):
+        resumed(case=Moved())
+    assert before == {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+
+
+def test_other_versions_are_warned_of(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(days=0.5, progress=False)
+    record = json.loads((tmp_path / "run.json").read_text())
+    record["versions"]["numba"] = "0.1"
+    (tmp_path / "run.json").write_text(json.dumps(record))
+    with pytest.warns(SetupWarning, match="begun with other versions of packages"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
+    (tmp_path / "run.json").write_text("[1]")
+    with pytest.raises(SetupError, match=r"run\.json is no record of a run; remove it"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
+    (tmp_path / "run.json").write_text('{"case": ')
+    with pytest.raises(SetupError, match=r"run\.json is no record of a run"):
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path)
+
+
+def test_a_second_signal_stops_at_once(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    from swe.signals import stop_requests
+
+    handler = signal.getsignal(signal.SIGINT)
+    with stop_requests() as request:
+        os.kill(os.getpid(), signal.SIGINT)
+        assert request.signal == signal.SIGINT
+        with pytest.raises(KeyboardInterrupt):
+            os.kill(os.getpid(), signal.SIGINT)
+    assert signal.getsignal(signal.SIGINT) == handler
+
+
+def test_a_run_in_another_thread_leaves_signals_alone(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    simulation = Simulation(icosahedral_mesh, Williamson5(), tmp_path)
+    thread = threading.Thread(target=simulation.run, args=(0.5, False))
+    thread.start()
+    thread.join()
+    assert simulation.time == 43200.0
+
+
+def test_two_runs_do_not_write_to_one_directory(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    first = Simulation(icosahedral_mesh, Williamson5(), tmp_path)
+    second = Simulation(icosahedral_mesh, Williamson5(), tmp_path)
+    assert first.recorder is not None
+    with first.recorder.recording(first, 1.0), pytest.raises(SetupError, match="is written to by another run just now"):
+        second.run(days=1, progress=False)
+    second.run(days=0.25, progress=False)
