@@ -289,7 +289,7 @@ def _stage_of_tile(
 
 
 @intrinsic
-def _use_widest_vectors(_typing_context: Any) -> Any:
+def _prefer_widest_vectors(_typing_context: Any) -> Any:
     """Let the loop that calls this use vectors of 512 bits where the processor has them.
 
     The compiler prefers 256 bits even there, to spare the clock of older processors, and is a seventh slower.
@@ -303,6 +303,13 @@ def _use_widest_vectors(_typing_context: Any) -> Any:
         return context.get_dummy_value()
 
     return types.void(), add_attribute
+
+
+def _nothing() -> None:
+    """What takes its place where loops are run as Python."""
+
+
+use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_vectors  # type: ignore[attr-defined]
 
 
 @compiled
@@ -327,7 +334,7 @@ def stage(
     leaves `result` alone and counts unsound values.
     """
     for tile in numba.prange(unsound.size):
-        _use_widest_vectors()  # type: ignore[call-arg]
+        use_widest_vectors()  # type: ignore[call-arg]
         _stage_of_tile(
             tile,
             numba.get_thread_id(),
