@@ -6,7 +6,8 @@ whatever happens to the program, and rows can be written again. Equal runs give 
 
 import json
 import time as clock
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -74,7 +75,7 @@ PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
 def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
-    """Make a history file without snapshots."""
+    """Make a history file without snapshots; raise `RunError` where it cannot be written."""
     with _new_file(path) as file:
         file.setncatts(mesh_attributes(mesh, "snapshots of a shallow-water run"))
         write_mesh_variables(file, mesh, GEOMETRY)
@@ -86,17 +87,24 @@ def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
 
 
 def create_diagnostics(path: Path) -> None:
-    """Make a diagnostics file without rows."""
+    """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
     with _new_file(path) as file:
         _define_time(file)
         for name, (units, long_name) in SERIES.items():
             _define(file, name, ("Time",), units, long_name)
 
 
-def _new_file(path: Path) -> netCDF4.Dataset:
-    file = netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
-    file.set_fill_off()
-    return file
+@contextmanager
+def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
+    """A file to define and fill. One that cannot be written is left open: the library does not survive closing it."""
+    try:
+        file = netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
+        file.set_fill_off()
+        yield file
+        file.sync()
+    except (OSError, RuntimeError) as error:
+        raise RunError(f"{path} cannot be written ({error}); is the disk full?") from error
+    file.close()
 
 
 class _TimeFile:

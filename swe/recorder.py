@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 import numba
 import numpy as np
 
+from mesh.errors import MeshError
 from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
 from swe.budgets import measure_rates
@@ -121,7 +122,7 @@ class Recorder:
         self._write_status(simulation, days, "running")
         history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
         if starting:
-            write_mesh(simulation.mesh, self.directory / MESH_FILE, f"mesh of a run of {simulation.case.name}")
+            self._write_mesh(simulation)
             create_history(history, simulation.mesh, simulation.model.topography)
             create_diagnostics(diagnostics)
         snapshots, rows = self._written or (None, None)
@@ -130,6 +131,12 @@ class Recorder:
         self._days = days
         if starting:
             self.record(simulation, True, True)
+
+    def _write_mesh(self, simulation: "Simulation") -> None:
+        try:
+            write_mesh(simulation.mesh, self.directory / MESH_FILE, f"mesh of a run of {simulation.case.name}")
+        except MeshError as error:
+            raise RunError(str(error)) from error
 
     def _make_directory(self) -> None:
         try:

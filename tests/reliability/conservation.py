@@ -1,0 +1,106 @@
+"""What 50 days of test case 5 conserve, and how RK4's drift falls: python tests/reliability/conservation.py FOLDER.
+
+Prints the tables of docs/reliability.md; the runs stay in FOLDER, and go on where they were interrupted. Half an hour.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from cases import Williamson5
+from mesh import VoronoiMesh, read_mesh, scvt_mesh, write_mesh
+from mesh.build import mesh_from_points
+from mesh.gridded_density import find_density
+from mesh.nested import nested_scvt
+from mesh.optimizer import Limits
+from mesh.sphere import normalize
+from postprocess.compare import compare
+from swe import Simulation
+from swe.output import DIAGNOSTICS_FILE, read_series
+
+SECONDS_PER_DAY = 86400.0
+STEPS = (600.0, 300.0, 150.0)
+
+
+def nested_mesh() -> VoronoiMesh:
+    """2562 cells, refined in a circle."""
+    coarse, density = scvt_mesh(2562), find_density("refined-circle")
+    found = nested_scvt(normalize(coarse.cell_points), coarse.cells_on_vertex, density, limits=Limits(1e-6))
+    return mesh_from_points(found.points, found.triangles, density, "refined-circle")
+
+
+MESHES = {
+    "scvt": lambda: scvt_mesh(10242),
+    "refined-circle": lambda: scvt_mesh(10242, density="refined-circle"),
+    "nested": nested_mesh,
+}
+
+
+def made(folder: Path, name: str) -> VoronoiMesh:
+    """The mesh of that name, made unless it is there already."""
+    path = folder / f"{name}.nc"
+    if not path.exists():
+        write_mesh(MESHES[name](), path)
+    return read_mesh(path)
+
+
+def series_of(mesh: VoronoiMesh, directory: Path, days: float, **options: object) -> dict[str, np.ndarray]:
+    """Diagnostics of a run."""
+    Simulation(mesh, Williamson5(), directory, resume=True, **options).run(days)
+    return read_series(directory / DIAGNOSTICS_FILE)
+
+
+def largest(series: dict[str, np.ndarray], name: str) -> float:
+    """Largest magnitude in the course of a run."""
+    return float(np.abs(series[name]).max())
+
+
+def print_conservation(folder: Path) -> None:
+    """Largest changes, and the work of terms that cancel by the kinetic energy and a day."""
+    print("| mesh | cells | integrator | energy | mass | absolute vorticity | Coriolis work | exchange | enstrophy |")
+    print("|---|---|---|---|---|---|---|---|---|")
+    for name in MESHES:
+        mesh = made(folder, name)
+        for integrator in ("rk4", "rrk4"):
+            series = series_of(mesh, folder / f"{name}-{integrator}", 50.0, integrator=integrator)
+            turnover = series["kinetic_energy"].min() / SECONDS_PER_DAY
+            values = (
+                largest(series, "total_energy_change_of_total"),
+                largest(series, "mass_change"),
+                largest(series, "absolute_vorticity_change"),
+                largest(series, "total_energy_rate_coriolis") / turnover,
+                largest(series, "total_energy_rate_exchange") / turnover,
+                largest(series, "potential_enstrophy_change"),
+            )
+            print(
+                f"| {name} | {mesh.n_cells} | {integrator} | " + " | ".join(f"{value:.1e}" for value in values) + " |"
+            )
+
+
+def print_errors(folder: Path) -> None:
+    """Error of thickness at day 15 on the SCVT, with both integrators."""
+    comparison = compare([folder / "scvt-rk4", folder / "scvt-rrk4"], "auto", [15.0])
+    for entry in comparison.entries:
+        print(f"l2 of thickness at day 15, {entry.run.directory.name}: {entry.norms['thickness'].l2:.4e}")
+
+
+def print_orders(folder: Path) -> None:
+    """Drift of energy in 15 days on 2562 cells, by the time step."""
+    mesh = scvt_mesh(2562)
+    print("| time step, s | energy | order |")
+    print("|---|---|---|")
+    before = float("nan")
+    for step in STEPS:
+        series = series_of(mesh, folder / f"step-{step:g}", 15.0, time_step=step)
+        drift = abs(series["total_energy_change_of_total"][-1])
+        print(f"| {step:g} | {drift:.2e} | {np.log2(before / drift):.2f} |")
+        before = drift
+
+
+if __name__ == "__main__":
+    target = Path(sys.argv[1])
+    target.mkdir(parents=True, exist_ok=True)
+    print_conservation(target)
+    print_errors(target)
+    print_orders(target)
