@@ -8,7 +8,7 @@ STUDY := runs/verification
 GALEWSKY_CELLS := 2562 10242 40962 163842
 
 .SECONDARY:
-.PHONY: tc5 test lint format wheel-test verification references clean
+.PHONY: tc5 test lint format wheel-test verification reliability references clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -59,6 +59,11 @@ $(STUDY)/jet-%.done: runs/mesh.%.nc
 	mkdir -p $(STUDY)
 	$(BIN)/trisk run galewsky --set perturbed=false --mesh $< --force -o $(STUDY)/jet-$*
 	touch $@
+
+reliability: $(VENV)/installed-dev  ## The tables of docs/reliability.md made anew; half an hour
+	$(BIN)/python tests/reliability/conservation.py runs/reliability
+	$(BIN)/python tests/reliability/kill_runs.py 20
+	$(BIN)/python tests/reliability/mutate_meshes.py 2000
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
 	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/references/williamson5.nc

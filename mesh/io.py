@@ -150,7 +150,7 @@ def _sphere_radius(file: netCDF4.Dataset) -> float:
     except (TypeError, ValueError):
         radius = float("nan")
     if not (np.isfinite(radius) and radius > 0.0):
-        raise MeshError(f"the attribute sphere_radius is {file.sphere_radius!r}; it must be a positive number")
+        raise MeshError(f"the attribute sphere_radius is '{file.sphere_radius}'; it must be a positive number")
     return radius
 
 

@@ -34,6 +34,9 @@ DEFAULT_COURANT_NUMBER = 0.8
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two looks at signals and the bar of progress: some twentieth of a second."""
 
+MOST_EVENTS = 1e9
+"""Steps, snapshots or rows of a run; more of them take years."""
+
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
 DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
@@ -238,6 +241,7 @@ class Simulation:
             raise SetupError(
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
             )
+        self._require_possible_counts(end - self.time)
         with (
             worthwhile_threads(self.mesh.n_cells),
             stop_requests() as request,
@@ -248,6 +252,21 @@ class Simulation:
                 return
             with self.recorder.recording(self, days):
                 self._run_to(end, bar, request)
+
+    def _require_possible_counts(self, seconds: float) -> None:
+        """Raise `SetupError` where the run would never come to its end."""
+        configuration = self.configuration
+        for what, interval in (
+            ("time step", configuration.time_step),
+            ("snapshot interval", configuration.snapshot_interval),
+            ("diagnostics interval", configuration.diagnostics_interval),
+            ("checkpoint interval", self.checkpoint_interval),
+        ):
+            if seconds > MOST_EVENTS * interval:
+                raise SetupError(
+                    f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
+                    f"{seconds / interval:.1g}; give a longer one, or fewer days"
+                )
 
     def _run_to(self, end: float, bar: ProgressBar, request: StopRequest) -> None:
         snapshots = Schedule(self.configuration.snapshot_interval, end)
