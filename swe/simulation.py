@@ -257,10 +257,10 @@ class Simulation:
         """Raise `SetupError` where the run would never come to its end."""
         configuration = self.configuration
         for what, interval in (
-            ("time step", configuration.time_step),
             ("snapshot interval", configuration.snapshot_interval),
             ("diagnostics interval", configuration.diagnostics_interval),
             ("checkpoint interval", self.checkpoint_interval),
+            ("time step", configuration.time_step),
         ):
             if seconds > MOST_EVENTS * interval:
                 raise SetupError(
