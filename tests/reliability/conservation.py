@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from matplotlib.figure import Figure
 
 from cases import Williamson5
 from mesh import VoronoiMesh, read_mesh, scvt_mesh, write_mesh
@@ -101,9 +102,29 @@ def print_orders(folder: Path) -> None:
         before = drift
 
 
+def draw(folder: Path, path: Path) -> None:
+    """Changes of energy and of potential enstrophy on the SCVT, by scheme."""
+    figure = Figure(figsize=(9.0, 3.6), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for scheme in SCHEMES:
+        series = read_series(folder / f"scvt-{scheme}" / DIAGNOSTICS_FILE)
+        days = series["time"][1:] / SECONDS_PER_DAY
+        left.semilogy(days, np.maximum(np.abs(series["total_energy_change_of_total"][1:]), 1e-18), label=scheme)
+        right.plot(days, 100.0 * series["potential_enstrophy_change"][1:], label=scheme)
+    left.set(xlabel="time (days)", ylabel="|change of total energy| / total energy", title="Total energy")
+    right.set(xlabel="time (days)", ylabel="change (percent)", title="Potential enstrophy")
+    for axes in (left, right):
+        axes.grid(alpha=0.4)
+        axes.set_xlim(0.0, 50.0)
+    left.legend()
+    figure.suptitle("Test case 5 on 10242 cells")
+    figure.savefig(path, dpi=120)
+
+
 if __name__ == "__main__":
     target = Path(sys.argv[1])
     target.mkdir(parents=True, exist_ok=True)
     print_conservation(target)
+    draw(target, target / "reliability.png")
     print_errors(target)
     print_orders(target)
