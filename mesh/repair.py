@@ -20,6 +20,9 @@ Vector = tuple[float, float, float]
 HEIGHT_TOLERANCE = 1.0e-15
 """Height over a triangle's plane, in radii, above which a corner calls for a flip: a few units in the last place."""
 
+COVERING_HEIGHT = 1e-10
+"""Height over the plane of a triangle, in radii, above which a point is well inside its circle."""
+
 ARITHMETIC_TOLERANCE = 16 * 2.2e-16
 """Rounding error of a determinant, relative to the product of its vectors' lengths."""
 
@@ -74,6 +77,22 @@ def _place_circumcenter(points: Array, triangles: Index, triangle: int, circumce
     circumcenters[triangle, 1] = normal[1] * factor
     circumcenters[triangle, 2] = normal[2] * factor
     return _volume(points, a, normal) > 0.0
+
+
+@numba.njit(parallel=True, cache=True)
+def count_covers(points: Array, triangles: Index, circumcenters: Array, probes: Index) -> int:
+    """Number of triangles whose circle has one of the points `probes`, none of its corners, well inside."""
+    count = 0
+    for triangle in numba.prange(len(triangles)):
+        a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
+        for p in probes:
+            if p != a and p != b and p != c:
+                height = 0.0
+                for k in range(3):
+                    height += circumcenters[triangle, k] * (points[p, k] - points[a, k])
+                if height > COVERING_HEIGHT:
+                    count += 1
+    return count
 
 
 @numba.njit(parallel=True, cache=True, error_model="numpy")

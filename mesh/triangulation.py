@@ -6,7 +6,7 @@ from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
 from mesh.half_edges import build_twins, fill_rings, first_corners
 from mesh.ordering import sort_triangles
-from mesh.repair import BLOCK, flip_marked, survey, untangle
+from mesh.repair import BLOCK, count_covers, flip_marked, survey, untangle
 from mesh.sphere import normalize
 
 UNTANGLING_ROUNDS = 4
@@ -90,7 +90,17 @@ class Triangulation:
         if flips:
             self._fill_rings()
             self.flips += flips
+            return self._covers_once(points)
         return True
+
+    def _covers_once(self, points: Array) -> bool:
+        """Whether triangles that are Delaunay to their neighbours cover the sphere once, and so are so to all points.
+
+        Triangles that cover it d times without turning over cover a point d times too, unless all d sheets meet in it;
+        and that they do in two points at most, by the formula of Riemann and Hurwitz. So three points tell.
+        """
+        probes = np.arange(3) * (len(points) // 3)
+        return int(count_covers(points, self.triangles, self.circumcenters, probes)) == 0
 
     def _follow(self, previous: Array, points: Array) -> bool:
         """Repair at points along the way from `previous` to `points`; False where that does not succeed."""

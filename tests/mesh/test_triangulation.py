@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from plain_moments import is_delaunay
+from scipy.optimize import linprog
 from test_delaunay import spread_points
 
 from mesh.delaunay import delaunay
@@ -27,10 +28,15 @@ def assert_consistent(triangulation: Triangulation, points: np.ndarray) -> None:
         assert set(ring) == set(np.flatnonzero((triangles == point).any(axis=1)))
 
 
+def in_one_hemisphere(points: np.ndarray) -> bool:
+    """Whether all points lie on one side of some plane through the origin."""
+    return linprog(np.zeros(3), A_ub=-points, b_ub=-np.ones(len(points)), bounds=(None, None)).status == 0
+
+
 @settings(deadline=None, max_examples=60)
+@example(count=12, seed=28819, size=2.0)  # flips leave a tangle: Delaunay at every side, and not the triangulation
 @given(
-    # A dozen points moved by half a radian may leave the sphere uncovered, or covered by a tangle that flips keep.
-    count=st.integers(42, 2000),
+    count=st.integers(12, 2000),
     seed=st.integers(0, 10**6),
     size=st.sampled_from([1e-3, 0.1, 0.5, 2.0]),
 )
@@ -40,6 +46,7 @@ def test_repaired_and_rebuilt_are_equal_after_every_move(count: int, seed: int, 
     random = np.random.default_rng(seed + 1)
     for _ in range(3):
         moved = normalize(points + size / np.sqrt(count) * random.normal(size=points.shape))
+        assume(not in_one_hemisphere(moved))
         triangulation.update(moved, points)
         np.testing.assert_array_equal(sort_triangles(triangulation.triangles), sort_triangles(delaunay(moved)))
         points = moved
