@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from mesh import VoronoiMesh, build_operators
+from mesh.operators import vertex_to_cell
 from swe import ShallowWaterModel, State
 from swe.errors import SetupError
 from swe.tendency import tendency
@@ -97,3 +98,30 @@ def test_wrong_fields_are_refused(icosahedral_mesh: VoronoiMesh) -> None:
     cells[3] = np.nan
     with pytest.raises(SetupError, match="topography is nan at entity 3"):
         ShallowWaterModel(icosahedral_mesh, cells, vertices, GRAVITY)
+
+
+def test_anticipation_is_what_the_operators_say(any_mesh: VoronoiMesh) -> None:
+    """Q of -time (u . grad q)_e, with q at cells the kite-weighted mean and the tangential velocity from perp."""
+    if any_mesh.dv_edge.min() < 1e-3:
+        pytest.skip("gradients along edges of no length have no meaning")
+    model, state = random_setting(any_mesh)
+    mesh, coriolis = model.mesh, model.coriolis
+    h, u = state.thickness, state.normal_velocity
+    operators = build_operators(mesh)
+    q = (coriolis + operators.curl @ u) / (operators.cell_to_vertex @ h)
+    tail, head = mesh.vertices_on_edge.T
+    q_along = (q[head] - q[tail]) / mesh.dv_edge
+    q_across = operators.gradient @ vertex_to_cell(mesh, q)
+    q_edge = -100.0 * (u * q_across + (operators.perp @ u) * q_along)
+    flux = (operators.cell_to_edge @ h) * u
+    expected = 0.5 * (q_edge * (operators.perp @ flux) + operators.perp @ (q_edge * flux))
+    model.anticipation = 100.0
+    found = model.anticipated_acceleration(state)
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+    with_it, without = state.empty_like(), state.empty_like()
+    model.tendency(state, with_it)
+    model.anticipation = 0.0
+    model.tendency(state, without)
+    difference = with_it.normal_velocity - without.normal_velocity
+    np.testing.assert_allclose(difference, expected, rtol=0, atol=1e-12 * np.abs(without.normal_velocity).max())
+    np.testing.assert_array_equal(with_it.thickness, without.thickness)
