@@ -285,12 +285,13 @@ class Simulation:
             if self.recorder is not None and (self.time >= due or request.signal is not None):
                 self.recorder.checkpoint(self)
                 due = checkpoints.next_after(self.time)
-            request.raise_if_any(
-                self.time / SECONDS_PER_DAY,
-                "nothing is kept, as it has no run directory"
-                if self.recorder is None
-                else "a checkpoint is written, and --resume goes on from there",
-            )
+            if self.time < end:
+                request.raise_if_any(
+                    self.time / SECONDS_PER_DAY,
+                    "nothing is kept, as it has no run directory"
+                    if self.recorder is None
+                    else "a checkpoint is written, and --resume goes on from there",
+                )
 
     def _advance(self, event: float) -> None:
         """Take some steps towards `event`, seconds, which none passes."""
