@@ -18,6 +18,12 @@ from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
 from swe.errors import SetupError
 from swe.state import State
 
+SMALLEST, LARGEST = 1e-6, 1e12
+"""Radii, m, and gravities, m/s2, that arithmetic bears."""
+
+LARGEST_ANGLE = 4.0 * math.pi
+"""Two turns, radians: beyond, a number is likely to be in degrees."""
+
 
 @dataclass(frozen=True)
 class Case(ABC):
@@ -63,10 +69,26 @@ class Case(ABC):
         for name, value in self.parameters().items():
             if isinstance(value, float) and not math.isfinite(value):
                 raise SetupError(f"{name} is {value}; give a finite number")
+        self.require_positive("radius", "gravity")
         for name in ("radius", "gravity"):
+            if not SMALLEST < self.parameters()[name] < LARGEST:
+                raise SetupError(
+                    f"{name} is {self.parameters()[name]:g}; it must be between {SMALLEST:g} and {LARGEST:g}"
+                )
+
+    def require_positive(self, *names: str) -> None:
+        """Raise `SetupError` where one of these parameters is not positive."""
+        for name in names:
             value = self.parameters()[name]
             if value <= 0.0:
                 raise SetupError(f"{name} is {value:g}; it must be positive")
+
+    def require_angles(self, *names: str) -> None:
+        """Raise `SetupError` where one of these parameters is no angle that one would give in radians."""
+        for name in names:
+            value = self.parameters()[name]
+            if abs(value) > LARGEST_ANGLE:
+                raise SetupError(f"{name} is {value:g}; it is in radians, and must be between -4 pi and 4 pi")
 
     @property
     def has_exact_solution(self) -> bool:
@@ -160,7 +182,7 @@ class Case(ABC):
             return function(*arguments)
         except SetupError:
             raise
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             place = _place_of_call(error)
             raise SetupError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
 
@@ -178,7 +200,7 @@ class Case(ABC):
         return np.array(np.broadcast_to(values, longitude.shape))
 
 
-def _place_of_call(error: Exception) -> str:
+def _place_of_call(error: BaseException) -> str:
     """Where the function that was called from here came to `error`, as a part of a sentence."""
     called = traceback.extract_tb(error.__traceback__)[1:2]
     return "".join(f" in line {frame.lineno} of {frame.filename}" for frame in called)

@@ -98,7 +98,7 @@ def _made(kind: type, address: str, path: Path) -> object:
         return kind()
     except SetupError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         line = line_in(path, error)
         if isinstance(error, TypeError) and not line:
             raise SetupError(f"{address} cannot be made ({error}); give every parameter a default") from error
@@ -110,13 +110,21 @@ def _require_members(case: object, address: str, path: Path) -> None:
     members = {*Case.__annotations__, *vars(Case)} - {"name"}
     try:
         missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise SetupError(f"a property of {address} fails{line_in(path, error)}: {error!r}") from error
     if missing:
         raise SetupError(f"{address} lacks {', '.join(missing)}; derive the class from cases.Case and add them")
     known = cast(Case, case)
     if not (_is_finite(known.recommended_days) and known.recommended_days > 0.0):
         raise SetupError(f"recommended_days of {address} is {known.recommended_days!r}; give a number above 0")
+    if not (isinstance(known.title, str) and isinstance(known.reference, str)):
+        raise SetupError(f"title and reference of {address} are {known.title!r} and {known.reference!r}; give texts")
+    for name in ("prescribed_wind", "has_exact_solution"):
+        if not isinstance(getattr(known, name), bool):
+            raise SetupError(f"{name} of {address} is {getattr(known, name)!r}; give True or False")
+    for name in ("background_depth", "radius", "gravity", "rotation_rate"):
+        if not _is_finite(getattr(known, name)):
+            raise SetupError(f"{name} of {address} is {getattr(known, name)!r}; give a finite number")
     if not (known.convergence_order is None or _is_finite(known.convergence_order)):
         raise SetupError(f"convergence_order of {address} is {known.convergence_order!r}; give a number or None")
 

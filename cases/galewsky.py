@@ -68,6 +68,8 @@ class Galewsky(Case):
 
     def __post_init__(self) -> None:
         super().__post_init__()
+        self.require_positive("bump_width", "bump_length")
+        self.require_angles("bump_latitude")
         if not -0.5 * np.pi < self.southern_edge < self.northern_edge < 0.5 * np.pi:
             raise SetupError(
                 f"the jet has its edges at {self.southern_edge:g} and {self.northern_edge:g} rad; southern_edge must "

@@ -43,7 +43,10 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     for name in parameters:
         if name not in present:
             raise SetupError(f"{case.name} has no parameter '{name}'; choose among {', '.join(present)}")
-    kinds = get_type_hints(type(case))
+    try:
+        kinds = get_type_hints(type(case))
+    except Exception as error:
+        raise SetupError(f"the types of the parameters of {case.name} cannot be told: {error!r}") from error
     changed: dict[str, Any] = {
         name: _converted(case, name, value, kinds.get(name))
         for name, value in parameters.items()
@@ -57,7 +60,7 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
         return replace(case, **changed)
     except SetupError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         settings = ", ".join(f"{name} = {value!r}" for name, value in changed.items())
         file = case.name.rpartition(":")[0]  # for the name of a case of a user is FILE.py:CLASS
         raise SetupError(f"{case.name} cannot be made with {settings}{line_in(file, error)}: {error!r}") from error
@@ -76,9 +79,9 @@ def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
         if isinstance(number, bool) or (kind is int and number != int(number)):
             raise ValueError
         return int(number) if kind is int else float(number)
-    except (ValueError, OverflowError, ZeroDivisionError, SyntaxError, RecursionError):
+    except (ValueError, TypeError, OverflowError, ZeroDivisionError, SyntaxError, RecursionError, MemoryError):
         hint = ", such as 0.05 or pi/2-0.05" if kind is float else ""
-        raise SetupError(f"{name} is {value!r}; it must be {KINDS[kind]}{hint}") from None
+        raise SetupError(f"{name} is {str(value)[:80]!r}; it must be {KINDS[kind]}{hint}") from None
 
 
 def _truth(value: Value) -> bool:
@@ -97,7 +100,7 @@ def _number(text: str) -> float:
 
 
 def _arithmetic(node: ast.expr) -> float:
-    if isinstance(node, ast.Constant) and isinstance(node.value, int | float):
+    if isinstance(node, ast.Constant) and isinstance(node.value, int | float) and not isinstance(node.value, bool):
         return float(node.value)
     if isinstance(node, ast.Name) and node.id == "pi":
         return math.pi

@@ -16,6 +16,9 @@ from swe.errors import SetupError
 
 REFERENCE = "Williamson et al. (1992), J. Comput. Phys. 102, 211-224, https://doi.org/10.1016/S0021-9991(05)80016-6"
 
+LARGEST_WAVE_NUMBER = 200
+"""No mesh that fits a machine resolves more waves round the sphere, and their powers of cosines vanish."""
+
 
 @dataclass(frozen=True)
 class SolidRotation(Case):
@@ -34,6 +37,10 @@ class SolidRotation(Case):
     def axis(self) -> Array:
         """Unit vector (3,) of the axis of the flow."""
         return np.array([-np.sin(self.angle), 0.0, np.cos(self.angle)])
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.require_angles("angle")
 
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """The wind is k x grad of it: equation (92)."""
@@ -84,6 +91,11 @@ class Williamson1(SolidRotation):
 
     background_depth: float = 1000.0
     """Thickness outside of the bell, m."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.require_positive("bell_radius")
+        self.require_angles("bell_longitude", "bell_latitude")
 
     @property
     def has_exact_solution(self) -> bool:
@@ -151,6 +163,11 @@ class ConicalMountain(Case):
 
     mountain_latitude: float = np.pi / 6.0
     """Latitude of the peak, rad."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.require_positive("mountain_radius")
+        self.require_angles("mountain_longitude", "mountain_latitude")
 
     def topography(self, longitude: Array, latitude: Array) -> Array:
         """Equation (134): a cone in the plane of longitude and latitude."""
@@ -224,8 +241,8 @@ class Williamson6(Case):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.wave_number < 1:
-            raise SetupError(f"wave_number is {self.wave_number}; it must be 1 or more")
+        if not 1 <= self.wave_number <= LARGEST_WAVE_NUMBER:
+            raise SetupError(f"wave_number is {self.wave_number}; it must be 1 to {LARGEST_WAVE_NUMBER}")
 
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """The zonal flow and the wave, a spherical harmonic of degree R + 1."""

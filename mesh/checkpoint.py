@@ -61,10 +61,12 @@ def load_checkpoint(path: Path, description: Mapping[str, object]) -> Array:
     """Points (n, 3) to go on from; raise `MeshError` where there are none, or they belong to another generation."""
     try:
         with np.load(path) as file:
-            points, stored = file["points"], json.loads(str(file["description"]))
+            points, stored = file["points"], dict(json.loads(str(file["description"])).items())
+        if points.ndim != 2 or points.shape[1] != 3 or points.dtype != np.float64 or not np.isfinite(points).all():
+            raise ValueError("its points are none")
     except FileNotFoundError as error:
         raise MeshError(f"{path}: there is no checkpoint to resume from; start without --resume") from error
-    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
+    except (OSError, EOFError, LookupError, ValueError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise MeshError(f"{path}: not a readable checkpoint ({error}); remove it and start anew") from error
     for name, value in description.items():
         if stored.get(name) != value:
@@ -72,4 +74,6 @@ def load_checkpoint(path: Path, description: Mapping[str, object]) -> Array:
                 f"{path}: the checkpoint was made with {name} = {stored.get(name)}, not {value}; "
                 "give the same options, or start without --resume"
             )
+    if len(points) != description.get("cells", len(points)):
+        raise MeshError(f"{path}: the checkpoint has {len(points)} points, not {description['cells']}; start anew")
     return points

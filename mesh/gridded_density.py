@@ -19,6 +19,7 @@ LATITUDE_NAMES = ("lat", "latitude")
 LONGITUDE_NAMES = ("lon", "longitude")
 INTERPOLATION_NEIGHBOURS = 3
 SMOOTHING_NEIGHBOURS = 6
+MOST_PASSES = 10_000
 
 
 @dataclass(frozen=True)
@@ -34,10 +35,11 @@ class Shaping:
     smoothing: int = 0
 
     def __post_init__(self) -> None:
-        if not (self.floor >= 0.0 and np.isfinite(self.power) and self.smoothing >= 0):
+        if not (0.0 <= self.floor < np.inf and np.isfinite(self.power) and 0 <= self.smoothing <= MOST_PASSES):
             raise MeshError(
                 f"a density cannot have the floor {self.floor:g}, the power {self.power:g} and {self.smoothing} passes "
-                "of smoothing; floor and passes must not be negative"
+                f"of smoothing; give finite numbers, none of them negative but the power, and {MOST_PASSES} passes at "
+                "most"
             )
 
     def apply(self, values: Array, smooth: Callable[[Array], Array]) -> Array:
@@ -73,6 +75,8 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
     the variable cannot be used.
     """
     shaping = Shaping() if shaping is None else shaping
+    if not Path(path).is_file():
+        raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
     try:
         with netCDF4.Dataset(path) as file:
             if variable not in file.variables:
@@ -81,8 +85,10 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
             if field.dimensions == ("nCells",):
                 return _density_on_mesh(file, _values(field, shaping, path), shaping, path)
             return _density_on_grid(file, field, shaping, path)
-    except (OSError, RuntimeError) as error:
-        raise MeshError(f"{path}: not a readable NetCDF file ({error}); give one with a density") from error
+    except (OSError, RuntimeError, ValueError, IndexError) as error:
+        if isinstance(error, MeshError):
+            raise
+        raise MeshError(f"{path}: holds no density that can be used ({error}); give a NetCDF file with one") from error
 
 
 def _values(field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Array:
@@ -105,6 +111,8 @@ def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Sh
             "and lon in degrees, or on nCells"
         )
     latitude, longitude = (np.radians(np.asarray(file[name][:]).astype(float)) for name in names)
+    if not (np.isfinite(latitude).all() and np.isfinite(longitude).all()):
+        raise MeshError(f"{path}: {' or '.join(names)} is not finite everywhere; mend the coordinates")
     values = _values(field, shaping, path)
     if values.shape != (len(latitude), len(longitude)):
         raise MeshError(f"{path}: {field.name} has shape {values.shape} instead of (lat, lon)")
@@ -112,6 +120,8 @@ def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Sh
         raise MeshError(f"{path}: {field.name} has dimensions {field.dimensions}; order them as (lat, lon)")
     # Both ends of a full circle are one meridian.
     latitude, rows = np.unique(latitude, return_index=True)
+    if len(latitude) < 2:
+        raise MeshError(f"{path}: {field.name} has one latitude; a grid needs two at least")
     longitude, columns = np.unique(np.round(longitude % (2.0 * np.pi), 12) % (2.0 * np.pi), return_index=True)
     values = shaping.apply(values[np.ix_(rows, columns)], _smooth_grid)
     # One column more on each side makes the grid periodic.
@@ -137,6 +147,8 @@ def _density_on_mesh(file: netCDF4.Dataset, values: Array, shaping: Shaping, pat
     if not all(name in file.variables for name in ("xCell", "yCell", "zCell")):
         raise MeshError(f"{path}: a density on nCells needs xCell, yCell and zCell in the same file")
     centers = normalize(np.stack([np.asarray(file[f"{axis}Cell"][:]).astype(float) for axis in "xyz"], axis=1))
+    if len(centers) <= SMOOTHING_NEIGHBOURS or not np.isfinite(centers).all():
+        raise MeshError(f"{path}: xCell, yCell and zCell must be finite, and of more than {SMOOTHING_NEIGHBOURS} cells")
     neighbours = cKDTree(centers).query(centers, k=SMOOTHING_NEIGHBOURS + 1)[1][:, 1:]
     shaped = shaping.apply(values, lambda field: 0.5 * field + 0.5 * field[neighbours].mean(axis=1))
     return density_from_cells(centers, shaped)

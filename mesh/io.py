@@ -90,6 +90,8 @@ def read_mesh(path: str | os.PathLike[str], recompute_metrics: bool = False) -> 
     not to `OWN_TOLERANCE`; raises `MeshError` where the file cannot be read or is not a valid mesh.
     """
     path = Path(path)
+    if path.exists() and not path.is_file():
+        raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
     try:
         with netCDF4.Dataset(path) as file:
             file.set_auto_mask(False)

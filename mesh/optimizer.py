@@ -78,6 +78,8 @@ class Limits:
     def __post_init__(self) -> None:
         if not (np.isfinite(self.tolerance) and self.tolerance > 0.0):
             raise MeshError(f"the tolerance is {self.tolerance:g} mean spacings; it must be positive and finite")
+        if not self.seconds > 0.0:
+            raise MeshError(f"the time allowed is {self.seconds:g} s; it must be positive")
 
     def reason_to_stop(self, history: History) -> str | None:
         """Which limit the last iteration reached: `tolerance`, `iterations` or `seconds`; None for none."""

@@ -1,6 +1,5 @@
 """Reference solutions by the spectral model: made, stored as harmonics in one small file a case, read and evaluated."""
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -16,6 +15,9 @@ from swe.errors import SetupError
 REFERENCE_DAYS = {"williamson5": (5.0, 10.0, 15.0), "williamson6": (14.0,), "galewsky": (6.0,)}
 """Days of the stored references by case."""
 
+LARGEST_TRUNCATION = 8191
+LAST_DAY = 1e5
+LEAST_DAMPING_HOURS = 1e-9
 LEAST_TRUNCATION = 16
 
 MEASURES = ("thickness", "velocity", "vorticity")
@@ -87,15 +89,18 @@ def make_reference(
     What lies beyond half the truncation is a part of what the two highest truncations differ by. Raises `SetupError`
     where an argument is out of range or the case is not one of the full equations, `RunError` where a run fails.
     """
-    if truncation < LEAST_TRUNCATION:
-        raise SetupError(f"the truncation is {truncation}; give at least {LEAST_TRUNCATION}")
-    wrong = [day for day in days if not (math.isfinite(day) and day > 0.0)]
+    if not LEAST_TRUNCATION <= truncation <= LARGEST_TRUNCATION:
+        raise SetupError(f"the truncation is {truncation}; give {LEAST_TRUNCATION} to {LARGEST_TRUNCATION}")
+    wrong = [day for day in days if not 0.0 < day <= LAST_DAY]
     if wrong or not days:
         raise SetupError(
-            f"a reference of {case.name} cannot be given on day {min(wrong, default=0.0):g}; give later days"
+            f"a reference of {case.name} cannot be given on day {min(wrong, default=0.0):g}; give days after the "
+            f"start, up to {LAST_DAY:g}"
         )
-    if not damping_hours > 0.0:
-        raise SetupError(f"the damping time is {damping_hours:g} hours; it must be positive, or inf for no damping")
+    if not damping_hours > LEAST_DAMPING_HOURS:
+        raise SetupError(
+            f"the damping time is {damping_hours:g} hours; it must be above {LEAST_DAMPING_HOURS:g}, or inf for none"
+        )
     if case.prescribed_wind:
         raise SetupError(
             f"{case.name} prescribes its wind, which the spectral model does not do; it has an exact solution"

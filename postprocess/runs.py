@@ -69,7 +69,14 @@ class Run:
     def _read(self, row: int) -> Snapshot:
         with netCDF4.Dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
-            return Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
+            snapshot = Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
+        wrong = [name for name, values in snapshot.fields.items() if not np.isfinite(values).all()]
+        if wrong or not snapshot.fields["thickness"].min(initial=np.inf) > 0.0:
+            raise SetupError(
+                f"{self.directory / HISTORY_FILE} has no sound {wrong[0] if wrong else 'thickness'} on day "
+                f"{snapshot.day:g}; it is damaged, run it again"
+            )
+        return snapshot
 
 
 def read_run(directory: Path) -> Run:
@@ -94,12 +101,22 @@ def read_run(directory: Path) -> Run:
             days=days,
             series=series,
         )
+        _require_rows(run)
         _require_sizes(run.last_snapshot(), run)
         return run
     except (MeshError, SetupError):
         raise
-    except (OSError, RuntimeError, ValueError, AttributeError, IndexError, KeyError, TypeError) as error:
+    except (OSError, RuntimeError, ValueError, AttributeError, LookupError, TypeError, ArithmeticError) as error:
         raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+
+
+def _require_rows(run: Run) -> None:
+    """Raise `SetupError` where the files have no rows, or not those of ascending times that a run writes."""
+    for name, times in ((HISTORY_FILE, run.days), (DIAGNOSTICS_FILE, run.series["time"])):
+        if not len(times):
+            raise SetupError(f"{run.directory / name} has no rows; the run was killed at its start, run it again")
+        if not np.all(np.diff(times, prepend=-1.0) > 0.0):
+            raise SetupError(f"{run.directory / name} has times that do not ascend; it is damaged, run it again")
 
 
 def _require_sizes(snapshot: Snapshot, run: Run) -> None:

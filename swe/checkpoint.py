@@ -12,19 +12,23 @@ from pathlib import Path
 import numpy as np
 
 from mesh.files import written_aside
-from swe.errors import RunError, SetupWarning
+from swe.errors import RunError, SetupError, SetupWarning
 from swe.state import State
 
 KEPT = 2
 
 PATTERN = "checkpoint.*.npz"
 
+COUNTS = ("steps", "snapshots", "rows", "history_size", "diagnostics_size")
+"""Integers of a checkpoint."""
+
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
     """A state at `time`, seconds since the start, after `steps` steps.
 
-    `snapshots` and `rows` are the numbers of snapshots and of rows of diagnostics that were written until then.
+    `snapshots` and `rows` are the numbers of snapshots and of rows of diagnostics that were written until then, and
+    `history_size` and `diagnostics_size` the bytes that their files had.
     """
 
     state: State
@@ -32,6 +36,8 @@ class Checkpoint:
     steps: int
     snapshots: int
     rows: int
+    history_size: int
+    diagnostics_size: int
 
 
 def write_checkpoint(directory: Path, checkpoint: Checkpoint) -> None:
@@ -44,7 +50,7 @@ def write_checkpoint(directory: Path, checkpoint: Checkpoint) -> None:
                 thickness=checkpoint.state.thickness,
                 normal_velocity=checkpoint.state.normal_velocity,
                 time=checkpoint.time,
-                counts=np.array([checkpoint.steps, checkpoint.snapshots, checkpoint.rows]),
+                counts=np.array([getattr(checkpoint, name) for name in COUNTS], np.int64),
             )
             file.flush()
             os.fsync(file.fileno())
@@ -54,16 +60,19 @@ def write_checkpoint(directory: Path, checkpoint: Checkpoint) -> None:
         raise RunError(f"{path} cannot be written ({error.strerror or error}); is the disk full?") from error
 
 
-def last_checkpoint(directory: Path) -> Checkpoint | None:
-    """The last checkpoint of a run directory that is whole; None where there is none.
+def last_checkpoint(directory: Path, n_cells: int, n_edges: int) -> Checkpoint | None:
+    """The last checkpoint of a run directory that is whole; None where there is none at all.
 
-    Warns with `SetupWarning` of one that is damaged.
+    Warns with `SetupWarning` of one that is damaged; raises `SetupError` where all are.
     """
-    for path in reversed(checkpoint_paths(directory)):
+    paths = checkpoint_paths(directory)
+    for path in reversed(paths):
         try:
-            return _read(path)
-        except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile) as error:
-            warnings.warn(f"{path} is damaged ({error}); going back to an earlier one", SetupWarning, stacklevel=2)
+            return _read(path, n_cells, n_edges)
+        except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile) as error:
+            warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
+    if paths:
+        raise SetupError(f"no checkpoint in {directory} is whole; start anew (--force)")
     return None
 
 
@@ -78,8 +87,18 @@ def checkpoint_paths(directory: Path) -> list[Path]:
     return sorted(directory.glob(PATTERN))
 
 
-def _read(path: Path) -> Checkpoint:
+def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:
+    """The checkpoint at `path`; raises one of several errors where it is none of such a mesh."""
     with np.load(path) as file:
-        steps, snapshots, rows = file["counts"].tolist()
         state = State(file["thickness"], file["normal_velocity"])
-        return Checkpoint(state, float(file["time"]), steps, snapshots, rows)
+        time, counts = file["time"], file["counts"]
+    for name, values, size in (("thickness", state.thickness, n_cells), ("velocity", state.normal_velocity, n_edges)):
+        if values.shape != (size,) or values.dtype != np.float64 or not np.isfinite(values).all():
+            raise ValueError(f"its {name} is not that of a state on the mesh")
+    if not state.thickness.min() > 0.0:
+        raise ValueError("its thickness is not positive")
+    if counts.shape != (len(COUNTS),) or counts.dtype != np.int64 or counts.min() < 1:
+        raise ValueError("its counts are none")
+    if time.shape != () or time.dtype != np.float64 or not 0.0 < time < np.inf:
+        raise ValueError("its time is none")
+    return Checkpoint(state, float(time), **dict(zip(COUNTS, counts.tolist(), strict=True)))

@@ -48,7 +48,8 @@ class BiharmonicDissipation:
         at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
         at_vertices = circulation[mesh.edges_on_vertex].sum(axis=1) / mesh.area_triangle
         bound = 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
-        return 2.0 / (self.coefficient * bound**2)
+        rate = self.coefficient * bound**2
+        return 2.0 / rate if rate > 0.0 else float("inf")
 
     def laplacian(self, velocity: Array, result: Array) -> None:
         """Write lap u at edges (n_edges,), 1/(m s), into `result`."""

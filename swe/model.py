@@ -244,6 +244,8 @@ class ShallowWaterModel:
 
 def check_field(name: str, values: Array, size: int) -> None:
     """Raise `SetupError` where `values` are not `size` finite numbers of double precision."""
+    if not isinstance(values, np.ndarray):
+        raise SetupError(f"{name} is {type(values).__name__}; it must be an array of {size} numbers")
     if values.shape != (size,):
         raise SetupError(f"{name} has shape {values.shape}, but the mesh needs ({size},)")
     if values.dtype != np.float64:

@@ -6,7 +6,7 @@ whatever happens to the program, and rows can be written again. Equal runs give 
 
 import json
 import time as clock
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -110,23 +110,32 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 class _TimeFile:
     """A file that grows along time; `rows` is where the next one goes: after the last, or over what follows `rows`.
 
-    Raises `RunError` where the file cannot be opened, or has fewer rows than that.
+    Raises `SetupError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
+    `size` bytes, or its first `rows` are not those of ascending times.
     """
 
-    def __init__(self, path: Path, rows: int | None) -> None:
+    def __init__(self, path: Path, names: Iterable[str], rows: int | None = None, size: int = 0) -> None:
         self._path = path
         self._failed = False
         try:
             self._file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
             present = len(self._file.dimensions["Time"])
+            missing = {"time", *names} - set(self._file.variables)
         except (OSError, RuntimeError, KeyError) as error:
-            raise RunError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
+            raise SetupError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
         # Values are written as they are; looking for masks and scales takes as long as writing them.
         self._file.set_auto_maskandscale(False)
-        self._file.set_fill_off()
-        if rows is not None and rows > present:
-            raise RunError(f"{path} has {present} rows, but its run had written {rows}; start anew (--force)")
         self.rows = present if rows is None else rows
+        times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
+        if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
+            self._file.close()
+            raise SetupError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
+        self._file.set_fill_off()
+
+    @property
+    def size(self) -> int:
+        """Bytes of the file."""
+        return self._path.stat().st_size
 
     def _write(self, values: Mapping[str, Array]) -> None:
         """Write new rows (n, ...) of every variable."""
@@ -149,6 +158,9 @@ class _TimeFile:
 class HistoryFile(_TimeFile):
     """Snapshots, written one by one."""
 
+    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, FIELDS, rows, size)
+
     def append(self, time: float, model: ShallowWaterModel, state: State, diagnosis: Diagnosis) -> None:
         """Write the snapshot of `state` and of what follows from it at `time`, seconds since the start."""
         zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
@@ -167,8 +179,8 @@ class HistoryFile(_TimeFile):
 class DiagnosticsFile(_TimeFile):
     """Time series of invariants and of what limits the time step; rows wait for each other for up to a second."""
 
-    def __init__(self, path: Path, rows: int | None) -> None:
-        super().__init__(path, rows)
+    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, SERIES, rows, size)
         self._waiting: list[dict[str, float]] = []
         self._written = clock.monotonic()
         self._last: dict[str, float] | None = None
@@ -205,7 +217,7 @@ class DiagnosticsFile(_TimeFile):
         row.update(rates_of_time(row, self._last))
         self._last = row
         self._waiting.append(row)
-        if clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
+        if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()
 
     def flush(self) -> None:
@@ -226,11 +238,13 @@ class DiagnosticsFile(_TimeFile):
 def read_record(directory: Path) -> dict[str, object] | None:
     """What `run.json` holds, None where there is none; raise `SetupError` where it is no record of a run."""
     path = directory / RECORD_FILE
+    if path.exists() and not path.is_file():
+        raise SetupError(f"{path} is no file; remove it or choose another directory")
     try:
         record = json.loads(path.read_text())
     except (FileNotFoundError, NotADirectoryError):
         return None
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise SetupError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
     if not isinstance(record, dict):
         raise SetupError(f"{path} is no record of a run; remove it or choose another directory")

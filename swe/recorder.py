@@ -17,7 +17,7 @@ from mesh.errors import MeshError
 from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
 from swe.budgets import measure_rates
-from swe.checkpoint import Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
+from swe.checkpoint import PATTERN, Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, SetupError, SetupWarning
 from swe.invariants import measure_invariants, relative_changes
@@ -56,7 +56,7 @@ class Recorder:
         self._history: HistoryFile | None = None
         self._diagnostics: DiagnosticsFile | None = None
         self._begun = clock.perf_counter()
-        self._written: tuple[int, int] | None = None
+        self._reached: Checkpoint | None = None
         before = run_to_go_on_with(directory, overwrite, resume)
         if before is not None:
             self._require_same(before)
@@ -74,20 +74,25 @@ class Recorder:
                 SetupWarning,
                 stacklevel=4,
             )
-        days, seconds = before.get("days"), before.get("wall_seconds")
-        if not (isinstance(days, float | int) and isinstance(seconds, float | int)):
-            raise SetupError(f"{self.directory / RECORD_FILE} does not tell the days of the run; start anew (--force)")
-        self._days_before, self._seconds_before = float(days), float(seconds)
+        try:
+            self._days_before, self._seconds_before = float(str(before["days"])), float(str(before["wall_seconds"]))
+        except (KeyError, ValueError) as error:
+            raise SetupError(
+                f"{self.directory / RECORD_FILE} does not tell the days of the run; start anew (--force)"
+            ) from error
 
     def restore(self, simulation: "Simulation") -> None:
         """Put the run to be gone on with, if any, back to where its last checkpoint is."""
-        checkpoint = last_checkpoint(self.directory) if self.resumed else None
+        if not self.resumed:
+            return
+        checkpoint = last_checkpoint(self.directory, simulation.mesh.n_cells, simulation.mesh.n_edges)
         if checkpoint is None:
+            warnings.warn(f"{self.directory} holds no checkpoint; the run begins again", SetupWarning, stacklevel=3)
             return
         simulation.state.thickness[:] = checkpoint.state.thickness
         simulation.state.normal_velocity[:] = checkpoint.state.normal_velocity
         simulation.time, simulation.steps = checkpoint.time, checkpoint.steps
-        self._written = checkpoint.snapshots, checkpoint.rows
+        self._reached = checkpoint
 
     def require_days(self, days: float) -> None:
         """Raise `SetupError` where the run to be gone on with, if any, was to last for another number of days."""
@@ -107,6 +112,9 @@ class Recorder:
                 self._open(simulation, days)
                 yield
                 self._close()
+            except SetupError:
+                self._close()  # the files are not those of a run to go on with, and stay as they are
+                raise
             except BaseException as error:
                 stopped = isinstance(error, KeyboardInterrupt)
                 self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
@@ -115,20 +123,23 @@ class Recorder:
 
     def _open(self, simulation: "Simulation", days: float) -> None:
         """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
-        remove_leftovers(self.directory)
-        starting = simulation.steps == 0
+        remove_leftovers(self.directory, (*FILES, PATTERN))
+        self._days = days
+        history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
+        starting, reached = simulation.steps == 0, self._reached
         if starting:
             remove_checkpoints(self.directory)
-        self._write_status(simulation, days, "running")
-        history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
-        if starting:
-            self._write_mesh(simulation)
+            self._write_status(simulation, days, "running")
             create_history(history, simulation.mesh, simulation.model.topography)
             create_diagnostics(diagnostics)
-        snapshots, rows = self._written or (None, None)
-        self._history, self._diagnostics = HistoryFile(history, snapshots), DiagnosticsFile(diagnostics, rows)
-        self._written = None
-        self._days = days
+        if reached is None:
+            self._history, self._diagnostics = HistoryFile(history), DiagnosticsFile(diagnostics)
+        else:
+            self._history = HistoryFile(history, reached.snapshots, reached.history_size)
+            self._diagnostics = DiagnosticsFile(diagnostics, reached.rows, reached.diagnostics_size)
+            self._reached = None
+        self._write_status(simulation, days, "running")
+        self._write_mesh(simulation)
         if starting:
             self.record(simulation, True, True)
 
@@ -142,7 +153,9 @@ class Recorder:
         try:
             self.directory.mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise RunError(f"{self.directory} cannot be made: {error.strerror or error}") from error
+            raise SetupError(
+                f"{self.directory} cannot be made ({error.strerror or error}); choose another directory"
+            ) from error
 
     def record(self, simulation: "Simulation", snapshot: bool, diagnostics: bool) -> None:
         """Write the present state to the files that are due."""
@@ -174,7 +187,15 @@ class Recorder:
         self._diagnostics.flush()
         write_checkpoint(
             self.directory,
-            Checkpoint(simulation.state, simulation.time, simulation.steps, self._history.rows, self._diagnostics.rows),
+            Checkpoint(
+                simulation.state,
+                simulation.time,
+                simulation.steps,
+                self._history.rows,
+                self._diagnostics.rows,
+                self._history.size,
+                self._diagnostics.size,
+            ),
         )
         self._write_status(simulation, self._days, "running")
 
@@ -216,6 +237,8 @@ class Recorder:
                 f"{self.directory / RECORD_FILE} cannot be written ({error.strerror or error}); is the disk full?"
             ) from error
 
+
+FILES = (RECORD_FILE, MESH_FILE, HISTORY_FILE, DIAGNOSTICS_FILE)
 
 HOW_TO_GO_ON = "give the same options, or another directory"
 
@@ -266,7 +289,18 @@ def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[st
         raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
     if overwrite and resume:
         raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
-    before = None if overwrite else read_record(directory)
+    present = [path for name in (*FILES, PATTERN) for path in directory.glob(name)]
+    for path in present:
+        if not path.is_file():
+            raise SetupError(f"{path} is no file, but a run has a file of that name; choose another directory")
+    if overwrite:
+        return None
+    before = read_record(directory)
+    if before is None and present:
+        raise SetupError(
+            f"{directory} holds {present[0].name}, but no {RECORD_FILE} of a run; choose another directory, or replace "
+            "what it holds (--force)"
+        )
     if before is not None and not resume:
         raise SetupError(
             f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "

@@ -191,6 +191,8 @@ class Simulation:
     def _default_time_step(self, interval: float) -> float:
         """Largest step up to the default Courant number that divides `interval`."""
         per_second = self.model.courant_number(self.state, 1.0)
+        if not np.isfinite(per_second):
+            raise SetupError(f"the waves of {self.case.name} are too fast for numbers; correct its parameters")
         # Where nothing moves, under a prescribed wind of zero, any step does.
         return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
 
@@ -216,7 +218,7 @@ class Simulation:
         if time_step > limit:
             warnings.warn(
                 f"a time step of {time_step:g} s is likely to be unstable (Courant number "
-                f"{self.initial_courant_number:.2f}); one of {0.95 * limit:.3g} s would do",
+                f"{self.initial_courant_number:.3g}); one of {0.95 * limit:.3g} s would do",
                 SetupWarning,
                 stacklevel=3,
             )
@@ -301,7 +303,7 @@ class Simulation:
         if self.stepper.unsound:
             raise RunError(
                 f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
-                f"the Courant number was {self.initial_courant_number:.2f} at the start: where that is above "
+                f"the Courant number was {self.initial_courant_number:.3g} at the start: where that is above "
                 f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
             )
 
@@ -332,7 +334,7 @@ def _require_scheme(case: Case, integrator: str, anticipation: float, dissipatio
         raise SetupError(f"the integrator is {integrator!r}; it must be one of {', '.join(get_args(Integrator))}")
     for what, value in (("the anticipation", anticipation), ("the dissipation", dissipation)):
         if not (np.isfinite(value) and value >= 0.0):
-            raise SetupError(f"{what} is {value:g}; it must not be negative")
+            raise SetupError(f"{what} is {value:g}; it must be zero or a positive number")
     if case.prescribed_wind and (integrator != "rk4" or anticipation > 0.0 or dissipation > 0.0):
         raise SetupError(
             f"the wind of {case.name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"

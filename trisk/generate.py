@@ -17,6 +17,7 @@ from mesh.optimizer import Callback, Iterate, Limits, ScvtResult
 from mesh.scvt import Request, check_converged, generate_scvt, optimize
 from mesh.sphere import normalize
 from mesh.well_centered import GOAL, well_center
+from trisk.outputs import require_possible_file
 from trisk.report import convergence_bar
 
 
@@ -53,8 +54,7 @@ class MeshOptions:
 
 def generate(options: MeshOptions, output: Path, history: str) -> VoronoiMesh:
     """Write the mesh that the options ask for; a generation that fails or is interrupted leaves a checkpoint."""
-    if not output.parent.is_dir() or output.is_dir():
-        raise MeshError(f"{output}: cannot be written, as there is no such folder or it is one; choose another place")
+    require_possible_file(output)
     if options.nested is not None and (options.start, options.method, options.resume) != (None, "lbfgs", False):
         raise MeshError("--start, --method and --resume do not go with --nested, which starts from that mesh")
     density = find_density(options.density, options.density_variable, options.shaping)

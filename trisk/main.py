@@ -1,5 +1,6 @@
 """The `trisk` command; packages are imported when a command needs them, so that help is quick."""
 
+import errno
 import json
 import shlex
 import sys
@@ -22,6 +23,12 @@ app = typer.Typer(
 )
 
 app.add_typer(study.app, name="study")
+
+ERRORS_OF_PATHS = (
+    *(errno.ENOENT, errno.EACCES, errno.EPERM, errno.EEXIST, errno.ENOTDIR, errno.EISDIR),
+    *(errno.EINVAL, errno.ENAMETOOLONG, errno.ELOOP, errno.EROFS),
+)
+"""What the system says of paths that are no use."""
 
 RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
 """Exit codes; the last is that of shells, to which the number of the signal is added."""
@@ -376,13 +383,15 @@ def _warning_line(message: Warning | str, *_: object) -> str:
 def main() -> None:
     """Run the command line; exit with 0 when done, 1 where a run failed, 2 on bad input."""
     warnings.formatwarning = _warning_line  # type: ignore[assignment]
+    # Overflows and the like come of wrong input, which is told of by an error.
+    warnings.filterwarnings("ignore", category=RuntimeWarning)
     try:
         app()
     except Exception as error:
         code = _exit_code(error)
         if code is None:
             raise
-        typer.echo(f"error: {error}", err=True)
+        typer.echo(f"error: {_in_one_line(error)}", err=True)
         sys.exit(code)
 
 
@@ -393,6 +402,16 @@ def _exit_code(error: Exception) -> int | None:
 
     if isinstance(error, MeshError | SetupError):
         return BAD_INPUT
-    if isinstance(error, RunError | OSError):
+    if isinstance(error, OSError) and error.errno in ERRORS_OF_PATHS:
+        return BAD_INPUT
+    if isinstance(error, RunError | OSError | MemoryError):
         return RUN_FAILED
     return None
+
+
+def _in_one_line(error: Exception) -> str:
+    if isinstance(error, MemoryError):
+        return f"the machine has not enough memory for this ({error}); ask for fewer cells"
+    if isinstance(error, OSError) and error.strerror:
+        return f"{error.filename}: {error.strerror}".replace("\n", " ")
+    return str(error).replace("\n", " ")

@@ -10,15 +10,14 @@ from rich.table import Table
 from cases.base import Case
 from postprocess.reference import MEASURES, REFERENCE_DAYS, Reference, make_reference
 from postprocess.reference_file import write_reference
-from swe.errors import SetupError
+from trisk.outputs import require_possible_file
 
 
 def make(
     case: Case, days: Sequence[float], truncation: int, damping_hours: float, output: Path, history: str, quiet: bool
 ) -> None:
     """Run the spectral model, write the reference and print how its truncations differ."""
-    if not output.parent.is_dir() or output.is_dir():
-        raise SetupError(f"{output} cannot be written, as there is no such folder or it is one; choose another place")
+    require_possible_file(output)
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), disable=quiet) as progress:
         tasks = {}

@@ -1,0 +1,17 @@
+"""Files that commands write, tried before the work that fills them."""
+
+import tempfile
+from pathlib import Path
+
+from swe.errors import SetupError
+
+
+def require_possible_file(path: Path) -> None:
+    """Raise `SetupError` where no file can be written to `path`."""
+    if path.exists() and not path.is_file():
+        raise SetupError(f"{path} cannot be written, as it is there and no file; choose another place")
+    try:
+        with tempfile.NamedTemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise SetupError(f"{path} cannot be written ({path.parent}: {error.strerror}); choose another place") from error
