@@ -51,20 +51,31 @@ class Task:
         """The run, made unless it is there already; where it fails there is none, but the reason."""
         if not self.is_finished():
             tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
-            simulation = Simulation(
-                self.mesh,
-                self.case,
-                self.directory,
-                time_step=self.time_step,
-                snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
-                overwrite=True,
-            )
             try:
-                simulation.run(self.days, progress)
+                self._run(progress)
             except RunError as error:
                 tell(f"{self.directory.name}: {error}")
                 return None, str(error)
         return read_run(self.directory), ""
+
+    def _run(self, progress: bool) -> None:
+        """Go on with the run where the directory holds a part of it, else run it from the start."""
+        try:
+            self._simulation(resume=True).run(self.days, progress)
+        except SetupError:
+            self._simulation(resume=False).run(self.days, progress)
+
+    def _simulation(self, resume: bool) -> Simulation:
+        """The run, to be gone on with or to replace what the directory holds."""
+        return Simulation(
+            self.mesh,
+            self.case,
+            self.directory,
+            time_step=self.time_step,
+            snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
+            resume=resume,
+            overwrite=not resume,
+        )
 
     def is_finished(self) -> bool:
         """Whether the directory holds just this run, on this very mesh, run to the end and readable."""

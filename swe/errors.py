@@ -15,8 +15,8 @@ class RunError(RuntimeError):
     """The run itself failed; the message says when, where and why. What was written before stays readable."""
 
 
-class RunStopped(KeyboardInterrupt):
-    """A run was asked to stop, and did so after a step; the message says when, and whether it can go on."""
+class RunStopped(Exception):  # noqa: N818
+    """A run was asked to stop, and did so between two steps; the message says when, and where its checkpoint is."""
 
     def __init__(self, message: str, cause: signal.Signals) -> None:
         super().__init__(message)

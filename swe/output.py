@@ -287,6 +287,7 @@ def _define_time(file: netCDF4.Dataset) -> None:
 
 
 def read_series(path: Path) -> dict[str, Array]:
-    """All series of a diagnostics file by name, `time` among them."""
+    """All series of a diagnostics file by name, `time` among them; runs of earlier versions have no rates."""
     with netCDF4.Dataset(path) as file:
-        return {name: np.asarray(file[name][:]) for name in ("time", *SERIES)}
+        optional = set(rate_series()) - set(file.variables)
+        return {name: np.asarray(file[name][:]) for name in ("time", *SERIES) if name not in optional}

@@ -19,7 +19,7 @@ from mesh.io import mesh_hash, write_mesh
 from swe.budgets import measure_rates
 from swe.checkpoint import PATTERN, Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import RunError, SetupError, SetupWarning
+from swe.errors import RunError, RunStopped, SetupError, SetupWarning
 from swe.invariants import measure_invariants, relative_changes
 from swe.output import (
     DIAGNOSTICS_FILE,
@@ -57,9 +57,11 @@ class Recorder:
         self._diagnostics: DiagnosticsFile | None = None
         self._begun = clock.perf_counter()
         self._reached: Checkpoint | None = None
-        before = run_to_go_on_with(directory, overwrite, resume)
-        if before is not None:
-            self._require_same(before)
+        self._overwrite, self._resume = overwrite, resume
+        self._found = run_to_go_on_with(directory, overwrite, resume)
+        self._began = False
+        if self._found is not None:
+            self._require_same(self._found)
             self.resumed = True
 
     def _require_same(self, before: dict[str, object]) -> None:
@@ -94,6 +96,12 @@ class Recorder:
         simulation.time, simulation.steps = checkpoint.time, checkpoint.steps
         self._reached = checkpoint
 
+    def _require_unchanged(self) -> None:
+        """Raise `SetupError` where another run wrote to the directory since this one looked at it."""
+        if not self._began and run_to_go_on_with(self.directory, self._overwrite, self._resume) != self._found:
+            raise SetupError(f"{self.directory} was written to by another run meanwhile; start again")
+        self._began = True
+
     def require_days(self, days: float) -> None:
         """Raise `SetupError` where the run to be gone on with, if any, was to last for another number of days."""
         if self._days_before is not None and days != self._days_before:
@@ -108,6 +116,7 @@ class Recorder:
         with held(self.directory) as free:
             if not free:
                 raise SetupError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
+            self._require_unchanged()
             try:
                 self._open(simulation, days)
                 yield
@@ -116,7 +125,7 @@ class Recorder:
                 self._close()  # the files are not those of a run to go on with, and stay as they are
                 raise
             except BaseException as error:
-                stopped = isinstance(error, KeyboardInterrupt)
+                stopped = isinstance(error, RunStopped | KeyboardInterrupt)
                 self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
                 raise
             self._end(simulation, days, "completed")
@@ -129,6 +138,7 @@ class Recorder:
         starting, reached = simulation.steps == 0, self._reached
         if starting:
             remove_checkpoints(self.directory)
+            (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
             self._write_status(simulation, days, "running")
             create_history(history, simulation.mesh, simulation.model.topography)
             create_diagnostics(diagnostics)

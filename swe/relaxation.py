@@ -16,7 +16,7 @@ from swe.model import ShallowWaterModel
 from swe.state import State
 
 NEWTON_STEPS = 4
-"""Of the quadratic, whose root differs from 1 by 1e-3 at most where a step makes sense."""
+"""Of the quadratic, whose root differs from 1 by some 1e-3 at the default time step, and by less at shorter ones."""
 
 FARTHEST = 0.1
 """A root farther from 1 is that of round-off, where the flow is at rest or steady; the step is then left as it is."""

@@ -13,7 +13,10 @@ EXCESS = 0.01
 
 @dataclass(frozen=True)
 class Schedule:
-    """Whole multiples of `interval` seconds up to and including `end` seconds, which is always an event."""
+    """Whole multiples of `interval` seconds up to and including `end` seconds, which is always an event.
+
+    A multiple that differs from the end by round-off is the end.
+    """
 
     interval: float
     end: float
@@ -22,8 +25,11 @@ class Schedule:
         """The first event later than `time`, seconds; infinity after the end."""
         if time >= self.end:
             return float("inf")
-        count = np.floor(time / self.interval * (1.0 + ROUNDING)) + 1.0
-        return float(min(count * self.interval, self.end))
+        count = np.floor(time / self.interval)
+        while count * self.interval <= time:
+            count += 1.0
+        event = float(count * self.interval)
+        return self.end if event > self.end - ROUNDING * self.interval else event
 
     def is_due(self, time: float) -> bool:
         """Whether `time` is an event: the start, a multiple of the interval, or the end."""

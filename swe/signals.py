@@ -16,29 +16,40 @@ class StopRequest:
 
     def __init__(self) -> None:
         self.signal: signal.Signals | None = None
+        self.heeded = False
 
     def note(self, number: int, _frame: FrameType | None) -> None:
         """Take note of a signal; at the second one, stop at once."""
         if self.signal is not None:
+            self.heeded = True
             raise KeyboardInterrupt
         self.signal = signal.Signals(number)
 
     def raise_if_any(self, day: float, whereabouts: str) -> None:
         """Raise `RunStopped` if the run was asked to stop."""
         if self.signal is not None:
+            self.heeded = True
             raise RunStopped(f"stopped by {self.signal.name} at day {day:.3f}; {whereabouts}", self.signal)
 
 
 @contextmanager
 def stop_requests() -> Iterator[StopRequest]:
-    """Note Ctrl-C and SIGTERM in the course of the context, where this is the main thread; nothing elsewhere."""
+    """Note Ctrl-C and SIGTERM in the course of the context, where this is the main thread; nothing elsewhere.
+
+    Signals that the program ignores stay ignored. One that was noted and not heeded is passed on at the end.
+    """
     request = StopRequest()
     if threading.current_thread() is not threading.main_thread():
         yield request
         return
-    before = [(number, signal.signal(number, request.note)) for number in HEEDED]
+    before = {number: signal.getsignal(number) for number in HEEDED}
+    heeded = [number for number, handler in before.items() if handler not in (signal.SIG_IGN, None)]
+    for number in heeded:
+        signal.signal(number, request.note)
     try:
         yield request
     finally:
-        for number, handler in before:
-            signal.signal(number, handler)
+        for number in heeded:
+            signal.signal(number, before[number])
+    if request.signal is not None and not request.heeded:
+        signal.raise_signal(request.signal)

@@ -2,6 +2,7 @@
 
 import os
 import warnings
+from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, Protocol, get_args
@@ -13,7 +14,7 @@ from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.dissipation import BiharmonicDissipation
-from swe.errors import RunError, SetupError, SetupWarning
+from swe.errors import RunError, RunStopped, SetupError, SetupWarning
 from swe.fused import FusedRungeKutta
 from swe.invariants import Invariants, measure_invariants
 from swe.memory import return_freed_memory
@@ -167,6 +168,7 @@ class Simulation:
         check_field("initial normal velocity", self.state.normal_velocity, self.mesh.n_edges)
         self.time = 0.0
         self.steps = 0
+        self._broken = False
         problem = self._problem_with_state()
         if problem:
             raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
@@ -212,13 +214,17 @@ class Simulation:
 
     def _warn_of_instability(self) -> None:
         time_step = self.configuration.time_step
-        limit = time_step * STABLE_COURANT_NUMBER / max(self.initial_courant_number, 1e-300)
-        if self.dissipation is not None:
-            limit = min(limit, self.dissipation.largest_time_step)
-        if time_step > limit:
+        waves = time_step * STABLE_COURANT_NUMBER / max(self.initial_courant_number, 1e-300)
+        damping = float("inf") if self.dissipation is None else self.dissipation.largest_time_step
+        if time_step > min(waves, damping):
+            cause = (
+                f"the Courant number is {self.initial_courant_number:.3g}"
+                if waves < damping
+                else "it is long for the dissipation"
+            )
             warnings.warn(
-                f"a time step of {time_step:g} s is likely to be unstable (Courant number "
-                f"{self.initial_courant_number:.3g}); one of {0.95 * limit:.3g} s would do",
+                f"a time step of {time_step:g} s is likely to be unstable, as {cause}; one of "
+                f"{0.95 * min(waves, damping):.3g} s would do",
                 SetupWarning,
                 stacklevel=3,
             )
@@ -232,10 +238,13 @@ class Simulation:
         """Integrate to `days` after the start, writing output on the way.
 
         Raises `SetupError` where `days` is before now, or not the end of the run that is to go on, `RunError` where the
-        state ceases to be finite or the thickness to be positive, or where output cannot be written, and `RunStopped`,
-        a `KeyboardInterrupt`, at the end of a step after Ctrl-C or SIGTERM. What was written before stays.
+        state ceases to be finite or the thickness to be positive, or where output cannot be written, and `RunStopped`
+        between two steps some twentieth of a second after Ctrl-C or SIGTERM; a second one interrupts at once. What was
+        written before stays. After all of these but `RunStopped`, what the object holds is no state to go on from.
         """
         end = days * SECONDS_PER_DAY
+        if self._broken:
+            raise SetupError("the run broke off and cannot go on; make the simulation again, with resume=True")
         if self.recorder is not None:
             self.recorder.require_days(days)
         complete = self.recorder is not None and self.recorder.resumed and end == self.time
@@ -249,11 +258,15 @@ class Simulation:
             stop_requests() as request,
             ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar,
         ):
-            if self.recorder is None:
-                self._run_to(end, bar, request)
-                return
-            with self.recorder.recording(self, days):
-                self._run_to(end, bar, request)
+            recording = nullcontext() if self.recorder is None else self.recorder.recording(self, days)
+            with recording:
+                self._broken = True
+                try:
+                    self._run_to(end, bar, request)
+                except RunStopped:
+                    self._broken = False
+                    raise
+            self._broken = False
 
     def _require_possible_counts(self, seconds: float) -> None:
         """Raise `SetupError` where the run would never come to its end."""
@@ -292,7 +305,7 @@ class Simulation:
                     self.time / SECONDS_PER_DAY,
                     "nothing is kept, as it has no run directory"
                     if self.recorder is None
-                    else "a checkpoint is written, and --resume goes on from there",
+                    else f"its checkpoint is in {self.recorder.directory}",
                 )
 
     def _advance(self, event: float) -> None:
@@ -325,7 +338,7 @@ class Simulation:
 
 def _require_positive(what: str, value: float) -> None:
     if not (np.isfinite(value) and value > 0.0):
-        raise SetupError(f"{what} is {value:g} s; it must be positive")
+        raise SetupError(f"{what} is {value:g} s; it must be positive and finite")
 
 
 def _require_scheme(case: Case, integrator: str, anticipation: float, dissipation: float) -> None:
@@ -334,7 +347,7 @@ def _require_scheme(case: Case, integrator: str, anticipation: float, dissipatio
         raise SetupError(f"the integrator is {integrator!r}; it must be one of {', '.join(get_args(Integrator))}")
     for what, value in (("the anticipation", anticipation), ("the dissipation", dissipation)):
         if not (np.isfinite(value) and value >= 0.0):
-            raise SetupError(f"{what} is {value:g}; it must be zero or a positive number")
+            raise SetupError(f"{what} is {value:g}; it must be a finite number, and not negative")
     if case.prescribed_wind and (integrator != "rk4" or anticipation > 0.0 or dissipation > 0.0):
         raise SetupError(
             f"the wind of {case.name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"

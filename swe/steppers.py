@@ -10,10 +10,9 @@ from swe.schedule import equal_step, steps_towards
 from swe.state import State
 
 LANDINGS = 5
-"""Attempts at a step whose scaled length ends at an output time; each is a thousand times closer than the one before,
-and the clock is set to the output time in the end."""
+"""Attempts at a step whose scaled length ends at an output time; two do, but where round-off blurs the factor."""
 
-LANDED = 1e-12
+LANDED = 1e-10
 """Part of a step by which the last one may miss the output time that the clock shows."""
 
 
@@ -127,13 +126,17 @@ class RelaxedSteps:
         return self._relaxation.factor(state, self._increment)
 
     def _land(self, state: State, factor: float, remaining: float) -> tuple[float, float]:
-        """Try again with a step whose scaled length is `remaining` seconds; gives its factor and length."""
-        step = remaining
+        """Find the step whose scaled length is `remaining` seconds by secants; gives its factor and length."""
+        step, excess = remaining, factor * remaining - remaining
+        following = remaining / factor
         for _ in range(LANDINGS):
-            if abs(factor * step - remaining) <= LANDED * remaining:
+            if abs(excess) <= LANDED * remaining:
                 break
-            step = remaining / factor
+            before, excess_before, step = step, excess, following
             factor = self._try(state, step)
+            excess = factor * step - remaining
+            if excess != excess_before:
+                following = step - excess * (step - before) / (excess - excess_before)
         return factor, step
 
 

@@ -190,13 +190,14 @@ def run(
     from cases import find_case
     from cases.parameters import split_settings
     from swe import Simulation
-    from swe.errors import RunStopped
     from swe.recorder import run_to_go_on_with
     from trisk.meshes import chosen_mesh, mesh_of_run
     from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
     run_to_go_on_with(output, force, resume)  # before a mesh is made for nothing
+    if resume and recompute_metrics and mesh_file is None:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     known = mesh_of_run(output, cells) if resume and mesh_file is None else None
     simulation = Simulation(
         known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
@@ -213,11 +214,7 @@ def run(
         overwrite=force,
         resume=resume,
     )
-    try:
-        simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
-    except RunStopped as stop:
-        typer.echo(f"{stop}", err=True)
-        raise typer.Exit(STOPPED + stop.signal) from stop
+    simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
     if not quiet:
         print_run(output)
 
@@ -398,8 +395,10 @@ def main() -> None:
 def _exit_code(error: Exception) -> int | None:
     """Exit code for a foreseen error; None for a fault of this program."""
     from mesh import MeshError
-    from swe.errors import RunError, SetupError
+    from swe.errors import RunError, RunStopped, SetupError
 
+    if isinstance(error, RunStopped):
+        return STOPPED + error.signal
     if isinstance(error, MeshError | SetupError):
         return BAD_INPUT
     if isinstance(error, OSError) and error.errno in ERRORS_OF_PATHS:

@@ -30,7 +30,7 @@ def time_of_run(mesh: Path, directory: Path) -> float:
     """Seconds that the run takes, from when its directory is there, once its kernels are compiled."""
     subprocess.run(command(mesh, directory.with_name("compiled"), "--force"), check=True)
     run = subprocess.Popen(command(mesh, directory))
-    _wait_for(directory / "run.json", run)
+    _wait_for(directory / "run.json", run, 0)
     begin = time.monotonic()
     assert run.wait() == 0
     return time.monotonic() - begin
@@ -43,8 +43,10 @@ def kill_and_resume(mesh: Path, whole: Path, directory: Path, seconds: float, ch
     """
     told = []
     for _ in range(choice.randint(1, KILLS_OF_A_RUN)):
+        record = directory / "run.json"
+        written = record.stat().st_mtime_ns if record.exists() else 0
         run = subprocess.Popen(command(mesh, directory, "--resume"))
-        _wait_for(directory / "run.json", run)
+        _wait_for(record, run, written)
         moment = choice.uniform(0.0, seconds)
         try:
             assert run.wait(timeout=moment) == 0
@@ -64,8 +66,9 @@ def kill_and_resume(mesh: Path, whole: Path, directory: Path, seconds: float, ch
     return told
 
 
-def _wait_for(path: Path, run: subprocess.Popen) -> None:
-    while not path.exists():
+def _wait_for(path: Path, run: subprocess.Popen, before: int) -> None:
+    """Wait until the run writes to `path`, last written to at `before` nanoseconds, if at all."""
+    while not (path.exists() and path.stat().st_mtime_ns > before):
         assert run.poll() is None, f"the run ended with {run.returncode} before {path} was there"
         time.sleep(0.002)
 

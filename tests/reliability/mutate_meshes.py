@@ -255,7 +255,7 @@ def _difference(found: VoronoiMesh, original: VoronoiMesh) -> str:
         if name.startswith("lon"):
             # A meridian is no place near a pole: what counts is the distance that a longitude is off.
             difference = difference * np.cos(getattr(original, name.replace("lon", "lat")))
-        if np.any(difference > limit):
+        if not np.all(difference <= limit):
             return f"{name} off by {difference.max():.1e}"
     return ""
 

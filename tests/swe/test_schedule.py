@@ -1,3 +1,4 @@
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -14,6 +15,26 @@ def test_events_are_multiples_and_the_end() -> None:
     assert times == [10.0, 20.0, 25.0]
     assert schedule.next_after(25.0) == float("inf")
     assert [time for time in range(26) if schedule.is_due(float(time))] == [0, 10, 20, 25]
+
+
+@given(interval=st.floats(1.0, 1e5), count=st.integers(1, 100_000), early=st.sampled_from([1e-9, 1e-3, 0.5]))
+def test_an_event_is_not_passed_a_little_before_it(interval: float, count: int, early: float) -> None:
+    """The step before an event may end a thousandth of a second before it, however long the run."""
+    event = count * interval
+    schedule = Schedule(interval, end=1e12)
+    if event - early < event:
+        assert schedule.next_after(event - early) == event
+    assert schedule.next_after(event) == (count + 1) * interval
+
+
+@given(tenths=st.integers(1, 100), hours=st.integers(1, 240))
+def test_the_last_multiple_and_the_end_are_one_event(tenths: int, hours: int) -> None:
+    interval, end = 0.05 * hours * 3600.0, 0.1 * tenths * 86400.0
+    times, time = [], 0.0
+    while time < end:
+        time = Schedule(interval, end).next_after(time)
+        times.append(time)
+    assert np.diff(times, prepend=0.0).min() > 1.0
 
 
 @given(interval=st.floats(1.0, 1e6), limit=st.floats(0.5, 1e4))

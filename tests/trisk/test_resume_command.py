@@ -32,8 +32,8 @@ def test_a_signal_leaves_a_checkpoint_and_resume_goes_on(
     run.send_signal(number)
     _, err = run.communicate()
     assert run.returncode == 128 + number
-    assert err.startswith(f"stopped by {number.name} at day ")
-    assert err.endswith("; a checkpoint is written, and --resume goes on from there\n")
+    assert err.startswith(f"error: stopped by {number.name} at day ")
+    assert err.endswith(f"; its checkpoint is in {tmp_path / 'run'}\n")
     record = json.loads((tmp_path / "run" / "run.json").read_text())
     assert record["status"] == "interrupted"
     assert 0 < record["steps"] < 300 * 72
