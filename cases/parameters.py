@@ -16,6 +16,9 @@ from swe.errors import SetupError
 Value = float | bool | str
 """Of a parameter: a number or a truth value, or the text of one."""
 
+LONGEST_SHOWN = 80
+"""Characters of a wrong value that an error tells."""
+
 KINDS = {float: "a number", int: "a whole number", bool: "true or false"}
 
 OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
@@ -81,7 +84,8 @@ def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
         return int(number) if kind is int else float(number)
     except (ValueError, TypeError, OverflowError, ZeroDivisionError, SyntaxError, RecursionError, MemoryError):
         hint = ", such as 0.05 or pi/2-0.05" if kind is float else ""
-        raise SetupError(f"{name} is {str(value)[:80]!r}; it must be {KINDS[kind]}{hint}") from None
+        shown = value[:LONGEST_SHOWN] if isinstance(value, str) else value
+        raise SetupError(f"{name} is {shown!r}; it must be {KINDS[kind]}{hint}") from None
 
 
 def _truth(value: Value) -> bool:

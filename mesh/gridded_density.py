@@ -62,8 +62,10 @@ def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping |
         raise MeshError(
             f"there is no density named '{name}'; choose one of {', '.join(NAMED)}, or a NetCDF file by its name in .nc"
         )
-    if shaping not in (None, Shaping()):
-        raise MeshError(f"the density {name} cannot be shaped; floor, power and smoothing are for fields from files")
+    if shaping not in (None, Shaping()) or variable != DENSITY_VARIABLE:
+        raise MeshError(
+            f"the density {name} cannot be shaped; variable, floor, power and smoothing are for fields from files"
+        )
     return NAMED[name]
 
 

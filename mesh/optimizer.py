@@ -67,6 +67,10 @@ class History:
         return len(self.residual) - 1
 
 
+LARGEST_TOLERANCE = 10.0
+"""Mean spacings; no generator is as far from its centroid."""
+
+
 @dataclass(frozen=True)
 class Limits:
     """When to stop: at a residual in mean spacings, or after so many iterations or seconds."""
@@ -76,10 +80,13 @@ class Limits:
     seconds: float = float("inf")
 
     def __post_init__(self) -> None:
-        if not (np.isfinite(self.tolerance) and self.tolerance > 0.0):
-            raise MeshError(f"the tolerance is {self.tolerance:g} mean spacings; it must be positive and finite")
-        if not self.seconds > 0.0:
-            raise MeshError(f"the time allowed is {self.seconds:g} s; it must be positive")
+        if not 0.0 < self.tolerance <= LARGEST_TOLERANCE:
+            raise MeshError(
+                f"the tolerance is {self.tolerance:g} mean spacings; it must be positive, and {LARGEST_TOLERANCE:g} at "
+                "most"
+            )
+        if not self.seconds >= 0.0:
+            raise MeshError(f"the time allowed is {self.seconds:g} s; it must not be negative")
 
     def reason_to_stop(self, history: History) -> str | None:
         """Which limit the last iteration reached: `tolerance`, `iterations` or `seconds`; None for none."""

@@ -21,7 +21,7 @@ from postprocess.compare import Comparison, compare, fields_of, fields_on
 from postprocess.families import FAMILIES
 from postprocess.folders import prepared_folder
 from postprocess.runs import Run
-from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, write_table
+from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, require_days, write_table
 from postprocess.truncation import truncation_errors
 from swe.errors import SetupError
 
@@ -52,6 +52,7 @@ class Plan:
                     f"{cells} cells are no bisected icosahedron of a fit size; choose among {LEAST_CELLS}, 642, 2562, "
                     f"... up to {LARGEST_CELLS}"
                 )
+        require_days(self.days)
         if not 0.0 < self.error_day <= self.days:
             raise SetupError(
                 f"errors are to be taken on day {self.error_day:g}, which is not within the {self.days:g} days of the "

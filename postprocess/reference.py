@@ -90,7 +90,9 @@ def make_reference(
     where an argument is out of range or the case is not one of the full equations, `RunError` where a run fails.
     """
     if not LEAST_TRUNCATION <= truncation <= LARGEST_TRUNCATION:
-        raise SetupError(f"the truncation is {truncation}; give {LEAST_TRUNCATION} to {LARGEST_TRUNCATION}")
+        raise SetupError(
+            f"the truncation is {truncation}; give at least {LEAST_TRUNCATION}, at most {LARGEST_TRUNCATION}"
+        )
     wrong = [day for day in days if not 0.0 < day <= LAST_DAY]
     if wrong or not days:
         raise SetupError(

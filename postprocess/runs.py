@@ -4,6 +4,7 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import get_args
 
 import netCDF4
 import numpy as np
@@ -90,6 +91,8 @@ def read_run(directory: Path) -> Run:
             days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
         mesh = read_mesh(directory / MESH_FILE)
         configuration = record["configuration"]
+        if configuration["sampling"] not in get_args(Sampling):
+            raise ValueError(f"its sampling is {configuration['sampling']!r}")
         run = Run(
             directory,
             mesh,

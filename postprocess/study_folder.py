@@ -36,6 +36,17 @@ Row = dict[str, Any]
 """One line of a table by column: numbers and words."""
 
 
+MOST_DAYS = 1e5
+
+
+def require_days(days: float) -> None:
+    """Raise `SetupError` where the runs of a study cannot last for `days`."""
+    if not 0.0 < days <= MOST_DAYS:
+        raise SetupError(
+            f"the runs of a study are to last {days:g} days; give a number above 0 and up to {MOST_DAYS:g}"
+        )
+
+
 @dataclass(frozen=True)
 class Task:
     """A run that a study needs: `case` on `mesh` for `days`, a snapshot every `snapshot_days`, in `directory`."""

@@ -13,7 +13,7 @@ from postprocess.compare import fields_of
 from postprocess.folders import prepared_folder
 from postprocess.norms import scalar_norms, vector_norms
 from postprocess.runs import Run
-from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, fitted_order, write_table
+from postprocess.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, fitted_order, require_days, write_table
 from swe.errors import SetupError
 
 ORDER_OF_ENERGY_DRIFT = 5
@@ -24,6 +24,10 @@ DRAWN = {
     "thickness_difference_l2": "thickness, against the shortest step",
     "velocity_difference_l2": "velocity, against the shortest step",
 }
+
+
+LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-3, 1e6
+"""Seconds; beyond, no study comes to an end or to a sense."""
 
 
 @dataclass(frozen=True)
@@ -37,6 +41,12 @@ class TimePlan:
     time_steps: tuple[float, ...]
 
     def __post_init__(self) -> None:
+        require_days(self.days)
+        for time_step in self.time_steps:
+            if not LEAST_TIME_STEP <= time_step <= LARGEST_TIME_STEP:
+                raise SetupError(
+                    f"a time step is {time_step:g} s; give ones from {LEAST_TIME_STEP:g} to {LARGEST_TIME_STEP:g} s"
+                )
         if len(set(self.time_steps)) < 2:
             raise SetupError("a study of time steps needs at least two of them; give --dt more than once")
 

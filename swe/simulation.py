@@ -2,10 +2,11 @@
 
 import os
 import warnings
+from collections.abc import Callable
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal, Protocol, get_args
+from typing import Any, Literal, Protocol, get_args
 
 import numpy as np
 
@@ -150,20 +151,24 @@ class Simulation:
         overwrite: bool = False,
         resume: bool = False,
     ) -> None:
-        _require_positive("the snapshot interval", snapshot_interval)
-        _require_positive("the diagnostics interval", diagnostics_interval)
-        _require_positive("the checkpoint interval", checkpoint_interval)
-        _require_scheme(case, integrator, anticipation, dissipation)
+        require_options(
+            case,
+            time_step=time_step,
+            snapshot_interval=snapshot_interval,
+            diagnostics_interval=diagnostics_interval,
+            checkpoint_interval=checkpoint_interval,
+            integrator=integrator,
+            anticipation=anticipation,
+            dissipation=dissipation,
+        )
         self.case = case
         self.mesh = mesh.scaled(case.radius)
-        self.model = ShallowWaterModel(
-            self.mesh,
-            case.topography_on(self.mesh, sampling),
-            case.coriolis_on(self.mesh),
-            case.gravity,
-            case.prescribed_wind,
-        )
-        self.state = case.initial_state(self.mesh, sampling)
+        topography = _asked(case, case.topography_on, self.mesh, sampling)
+        coriolis = _asked(case, case.coriolis_on, self.mesh)
+        self.model = ShallowWaterModel(self.mesh, topography, coriolis, case.gravity, case.prescribed_wind)
+        self.state = _asked(case, case.initial_state, self.mesh, sampling)
+        if not isinstance(self.state, State):
+            raise SetupError(f"initial_state of {case.name} gives {type(self.state).__name__}; it must give a State")
         check_field("initial thickness", self.state.thickness, self.mesh.n_cells)
         check_field("initial normal velocity", self.state.normal_velocity, self.mesh.n_edges)
         self.time = 0.0
@@ -174,7 +179,6 @@ class Simulation:
             raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
         if time_step is None:
             time_step = self._default_time_step(min(snapshot_interval, diagnostics_interval))
-        _require_positive("the time step", time_step)
         self.configuration = Configuration(
             time_step, snapshot_interval, diagnostics_interval, sampling, integrator, anticipation, dissipation
         )
@@ -336,18 +340,41 @@ class Simulation:
         )
 
 
-def _require_positive(what: str, value: float) -> None:
-    if not (np.isfinite(value) and value > 0.0):
-        raise SetupError(f"{what} is {value:g} s; it must be positive and finite")
+def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
+    """What `function` of the case gives; a case may be of the user, and fail in any way."""
+    try:
+        return function(*arguments)
+    except (SetupError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:
+        raise SetupError(f"{function.__name__} of {case.name} failed: {error!r}") from error
 
 
-def _require_scheme(case: Case, integrator: str, anticipation: float, dissipation: float) -> None:
-    """Raise `SetupError` where these are out of range or do not go with the case."""
+def require_options(
+    case: Case,
+    *,
+    time_step: float | None,
+    snapshot_interval: float,
+    diagnostics_interval: float,
+    checkpoint_interval: float,
+    integrator: str,
+    anticipation: float,
+    dissipation: float,
+) -> None:
+    """Raise `SetupError` where options of a `Simulation` are out of range or do not go with the case."""
+    for what, interval in (
+        ("snapshot interval", snapshot_interval),
+        ("diagnostics interval", diagnostics_interval),
+        ("checkpoint interval", checkpoint_interval),
+        ("time step", time_step),
+    ):
+        if interval is not None and not 0.0 < interval < np.inf:
+            raise SetupError(f"the {what} is {interval:g} s; it must be positive and finite")
     if integrator not in get_args(Integrator):
         raise SetupError(f"the integrator is {integrator!r}; it must be one of {', '.join(get_args(Integrator))}")
-    for what, value in (("the anticipation", anticipation), ("the dissipation", dissipation)):
-        if not (np.isfinite(value) and value >= 0.0):
-            raise SetupError(f"{what} is {value:g}; it must be a finite number, and not negative")
+    for what, value in (("anticipation", anticipation), ("dissipation", dissipation)):
+        if not 0.0 <= value < np.inf:
+            raise SetupError(f"the {what} is {value:g}; it must be a finite number, and not negative")
     if case.prescribed_wind and (integrator != "rk4" or anticipation > 0.0 or dissipation > 0.0):
         raise SetupError(
             f"the wind of {case.name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"

@@ -9,6 +9,7 @@ from rich.table import Table
 
 from cases import find_case
 from mesh import VoronoiMesh, read_mesh, scvt_mesh
+from mesh.generators import MINIMUM_CELLS
 from swe import Simulation
 from swe.benchmark import Timing, measure
 
@@ -23,6 +24,9 @@ def timings(mesh_file: Path | None, cells: Sequence[int], show: bool) -> list[Ti
     """Timings of test case 5 on the mesh of a file or on meshes of so many cells, told one by one if `show`."""
     if mesh_file is not None and cells:
         raise typer.BadParameter("give either --mesh FILE or --cells N")
+    for number in cells:
+        if number < MINIMUM_CELLS:
+            raise typer.BadParameter(f"{number} cells make no mesh; give at least {MINIMUM_CELLS}")
     results = []
     for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS):
         if show:

@@ -7,7 +7,7 @@ import sys
 import warnings
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -131,6 +131,10 @@ def quality(
     if output is not None and not table1:
         raise typer.BadParameter("--output goes with --table1")
     if file is None:
+        if output is not None:
+            from postprocess.folders import require_possible_folder
+
+            require_possible_folder(output)
         print_table1(max_level, output)
         return
     from mesh import mesh_quality, read_mesh
@@ -190,12 +194,28 @@ def run(
     from cases import find_case
     from cases.parameters import split_settings
     from swe import Simulation
+    from swe.errors import SetupError
     from swe.recorder import run_to_go_on_with
+    from swe.simulation import require_options
     from trisk.meshes import chosen_mesh, mesh_of_run
     from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
-    run_to_go_on_with(output, force, resume)  # before a mesh is made for nothing
+    last_day = chosen.recommended_days if days is None else days
+    options: dict[str, Any] = {
+        "time_step": time_step,
+        "snapshot_interval": 3600.0 * snapshot_hours,
+        "diagnostics_interval": 3600.0 * diagnostics_hours,
+        "checkpoint_interval": 3600.0 * checkpoint_hours,
+        "integrator": integrator,
+        "anticipation": anticipation,
+        "dissipation": dissipation,
+    }
+    # What can be refused is so before a mesh is made for nothing.
+    require_options(chosen, **options)
+    if not 0.0 < last_day < float("inf"):
+        raise SetupError(f"the run is to last {last_day:g} days; give a number above 0")
+    run_to_go_on_with(output, force, resume)
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     known = mesh_of_run(output, cells) if resume and mesh_file is None else None
@@ -203,18 +223,12 @@ def run(
         known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
         chosen,
         output,
-        time_step=time_step,
-        snapshot_interval=3600.0 * snapshot_hours,
-        diagnostics_interval=3600.0 * diagnostics_hours,
-        checkpoint_interval=3600.0 * checkpoint_hours,
         sampling="mean" if means else "point",
-        integrator=integrator,
-        anticipation=anticipation,
-        dissipation=dissipation,
         overwrite=force,
         resume=resume,
+        **options,
     )
-    simulation.run(chosen.recommended_days if days is None else days, progress=not quiet)
+    simulation.run(last_day, progress=not quiet)
     if not quiet:
         print_run(output)
 

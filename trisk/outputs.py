@@ -10,8 +10,10 @@ def require_possible_file(path: Path) -> None:
     """Raise `SetupError` where no file can be written to `path`."""
     if path.exists() and not path.is_file():
         raise SetupError(f"{path} cannot be written, as it is there and no file; choose another place")
+    if not path.parent.is_dir():
+        raise SetupError(f"{path} cannot be written, as there is no such folder; choose another place")
     try:
         with tempfile.NamedTemporaryFile(dir=path.parent):
             pass
     except OSError as error:
-        raise SetupError(f"{path} cannot be written ({path.parent}: {error.strerror}); choose another place") from error
+        raise SetupError(f"{path} cannot be written ({error.strerror}); choose another place") from error

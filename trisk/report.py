@@ -25,17 +25,21 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
         TimeElapsedColumn(),
     )
     first = math.nan
-    with Progress(*columns, console=Console(stderr=True), disable=not visible) as progress:
-        task = progress.add_task("", total=1.0, iteration=0, residual=math.nan, tolerance=tolerance)
+    progress = Progress(*columns, console=Console(stderr=True), disable=not visible)
+    task = progress.add_task("", total=1.0, iteration=0, residual=math.nan, tolerance=tolerance)
+    try:
 
         def show(iterate: Iterate) -> None:
             nonlocal first
+            progress.start()  # with the first iterate, so that what is refused shows no bar
             residual = iterate.residual
             first = max(residual, 2.0 * tolerance) if math.isnan(first) else first
             way = math.log(first / max(residual, 1e-300)) / math.log(first / tolerance)
             progress.update(task, completed=min(max(way, 0.0), 1.0), iteration=iterate.number, residual=residual)
 
         yield show
+    finally:
+        progress.stop()
 
 
 def print_quality(mesh: VoronoiMesh, name: str) -> None:

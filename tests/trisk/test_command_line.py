@@ -172,7 +172,7 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
         ((*run, "-o", tmp_path / "run", "--set", "gravity=high"), "gravity is 'high'; it must be a number"),
         (("run", "williamson1", *run[2:], "-o", tmp_path / "run", "--set", "background_depth=0"), "thickness is 0 m"),
         ((*run, "-o", tmp_path / "run", "--dt", -5), "the time step is -5 s"),
-        ((*run, "-o", tmp_path / "run", "--days", 0), "cannot go to day 0"),
+        ((*run, "-o", tmp_path / "run", "--days", 0), "is to last 0 days; give a number above 0"),
         ((*run, "-o", tmp_path / "run", "--snapshot-hours", 0), "the snapshot interval is 0 s"),
         ((*run, "-o", mesh_file / "run"), "cannot be used as a run directory"),
         (("mesh", "--cells", 3, "-o", tmp_path / "x.nc"), "too small"),

@@ -6,6 +6,7 @@ import signal
 import threading
 import warnings
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import pytest
@@ -15,7 +16,7 @@ from mesh import VoronoiMesh, scvt_mesh, write_mesh
 from swe import RunError, Simulation, State
 from swe.checkpoint import Checkpoint, checkpoint_paths, last_checkpoint, write_checkpoint
 from swe.errors import RunStopped, SetupError, SetupWarning
-from swe.output import HistoryFile
+from swe.output import DiagnosticsFile, HistoryFile
 from swe.recorder import Recorder
 from swe.signals import stop_requests
 
@@ -27,12 +28,20 @@ def same_files(one: Path, other: Path) -> bool:
 
 
 def run_and_stop(mesh: VoronoiMesh, folder: Path, **options: object) -> None:
-    """Run for a long time, and ask to stop a little later."""
+    """Run for three days, and ask to stop on the second."""
     simulation = Simulation(mesh, Williamson5(), folder, **{**OPTIONS, **options})
-    timer = threading.Timer(0.7, os.kill, (os.getpid(), signal.SIGTERM))
-    timer.start()
-    with pytest.raises(RunStopped, match=r"stopped by SIGTERM at day .*; its checkpoint is in"):
-        simulation.run(days=30, progress=False)
+    append = DiagnosticsFile.append
+
+    def append_and_ask(file: DiagnosticsFile, time: float, *arguments: object) -> None:
+        append(file, time, *arguments)
+        if time > 1e5:
+            os.kill(os.getpid(), signal.SIGTERM)
+
+    with (
+        mock.patch.object(DiagnosticsFile, "append", append_and_ask),
+        pytest.raises(RunStopped, match=r"stopped by SIGTERM at day .*; its checkpoint is in"),
+    ):
+        simulation.run(days=3, progress=False)
 
 
 def test_round_trip(tmp_path: Path) -> None:
@@ -125,17 +134,17 @@ def test_a_stopped_run_goes_on_to_the_same_files(
     icosahedral_mesh: VoronoiMesh, tmp_path: Path, integrator: str
 ) -> None:
     whole = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "whole", integrator=integrator, **OPTIONS)
-    whole.run(days=30, progress=False)
+    whole.run(days=3, progress=False)
     run_and_stop(icosahedral_mesh, tmp_path / "parts", integrator=integrator)
     record = json.loads((tmp_path / "parts" / "run.json").read_text())
     assert record["status"] == "interrupted"
-    assert 0 < record["day_reached"] < 30
+    assert 0 < record["day_reached"] < 3
     assert not same_files(tmp_path / "whole", tmp_path / "parts")
     again = Simulation(
         icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS
     )
     assert again.steps == record["steps"]
-    again.run(days=30, progress=False)
+    again.run(days=3, progress=False)
     assert same_files(tmp_path / "whole", tmp_path / "parts")
     np.testing.assert_array_equal(again.state.normal_velocity, whole.state.normal_velocity)
     after = json.loads((tmp_path / "parts" / "run.json").read_text())
@@ -143,7 +152,7 @@ def test_a_stopped_run_goes_on_to_the_same_files(
     assert after["wall_seconds"] > record["wall_seconds"]
     assert len(checkpoint_paths(tmp_path / "parts")) == 2
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS).run(
-        days=30, progress=False
+        days=3, progress=False
     )
     assert same_files(tmp_path / "whole", tmp_path / "parts")
 
@@ -199,8 +208,8 @@ def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp
     ):
         with pytest.raises(SetupError, match=f"holds a run with {name.replace('_', ' ')} = .*, not .*; give the same"):
             resumed(**{name: value})
-    with pytest.raises(SetupError, match=r"holds a run with days = 30, not 31"):
-        resumed().run(days=31)
+    with pytest.raises(SetupError, match=r"holds a run with days = 3, not 4"):
+        resumed().run(days=4)
     with pytest.raises(SetupError, match="leave out --force or --resume"):
         resumed(overwrite=True)
 
