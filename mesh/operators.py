@@ -11,7 +11,6 @@ import numpy as np
 from scipy.sparse import coo_array, csr_array
 
 from mesh.arrays import Array, Index, sum_by_index
-from mesh.sphere import east_north
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -110,9 +109,14 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
     Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
     exact for a uniform flow in the plane.
     """
-    east, north = east_north(mesh.lon_cell, mesh.lat_cell)
     return _velocity_at_cells(
-        normal_velocity, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.cells_on_edge, mesh.cell_points, east, north
+        normal_velocity,
+        mesh.n_edges_on_cell,
+        mesh.edges_on_cell,
+        mesh.cells_on_edge,
+        mesh.cell_points,
+        mesh.lon_cell,
+        mesh.lat_cell,
     )
 
 
@@ -123,11 +127,14 @@ def _velocity_at_cells(
     edges_on_cell: Index,
     cells_on_edge: Index,
     points: Array,
-    east: Array,
-    north: Array,
+    longitude: Array,
+    latitude: Array,
 ) -> tuple[Array, Array]:
     zonal, meridional = np.empty(len(points)), np.empty(len(points))
     for c in numba.prange(len(points)):
+        # The vectors of `mesh.sphere.east_north`, without arrays of them.
+        sin_lon, cos_lon, sin_lat = np.sin(longitude[c]), np.cos(longitude[c]), np.sin(latitude[c])
+        cos_lat = np.cos(latitude[c])
         ee = en = nn = right_east = right_north = 0.0
         for j in range(n_edges_on_cell[c]):
             edge = edges_on_cell[c, j]
@@ -136,8 +143,8 @@ def _velocity_at_cells(
             y = points[second, 1] - points[first, 1]
             z = points[second, 2] - points[first, 2]
             length = np.sqrt(x * x + y * y + z * z)
-            eastward = (east[c, 0] * x + east[c, 1] * y + east[c, 2] * z) / length
-            northward = (north[c, 0] * x + north[c, 1] * y + north[c, 2] * z) / length
+            eastward = (cos_lon * y - sin_lon * x) / length
+            northward = (cos_lat * z - sin_lat * (cos_lon * x + sin_lon * y)) / length
             ee += eastward * eastward
             en += eastward * northward
             nn += northward * northward

@@ -82,51 +82,47 @@ def measure_rates(
     prescribed wind no force acts, and all but the transport of mass is zero.
     """
     rates = dict.fromkeys((name for name in rate_series() if not name.endswith("_time")), 0.0)
-    mesh = model.mesh
-    bernoulli, gradient = np.empty(mesh.n_cells), np.empty(mesh.n_edges)
-    kernels.gradient_force(
-        state.thickness,
-        model.topography,
-        diagnosis.kinetic_energy,
-        model.gravity,
-        mesh.cells_on_edge,
-        mesh.dc_edge,
-        bernoulli,
-        gradient,
-    )
-    sums = np.empty((kernels.BLOCKS, 3))
+    mesh, h, u, q = model.mesh, state.thickness, state.normal_velocity, diagnosis.potential_vorticity
+    bernoulli, of_transport = np.empty(mesh.n_cells), np.empty((kernels.BLOCKS, 3))
+    kernels.bernoulli(h, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
     kernels.work_of_transport(
         tendency.thickness,
         mesh.area_cell,
         bernoulli,
-        diagnosis.potential_vorticity,
+        q,
         mesh.cells_on_vertex,
         mesh.kite_areas_on_vertex,
-        sums,
+        of_transport,
     )
-    mass, energy, enstrophy = sums.sum(axis=0).tolist()
+    mass, energy, enstrophy = of_transport.sum(axis=0).tolist()
     rates["mass_rate_transport"] = mass
     if model.prescribed_wind:
         return rates
-    flux = np.empty(mesh.n_edges)
-    kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, flux)
-
-    def work(acceleration: Array) -> _Work:
-        return _work(model, flux, diagnosis.potential_vorticity, acceleration)
-
-    pressure = work(gradient)
-    coriolis = work(tendency.normal_velocity - gradient)
-    rates["total_energy_rate_coriolis"] = coriolis.total_energy
-    rates["total_energy_rate_exchange"] = pressure.total_energy + energy
-    rates["absolute_vorticity_rate_coriolis"] = coriolis.absolute_vorticity
-    rates["absolute_vorticity_rate_gradient"] = pressure.absolute_vorticity
-    rates["potential_enstrophy_rate_coriolis"] = coriolis.potential_enstrophy + enstrophy
+    of_forces = np.empty((kernels.BLOCKS, 5))
+    kernels.work_of_forces(
+        h,
+        u,
+        tendency.normal_velocity,
+        bernoulli,
+        q,
+        mesh.cells_on_edge,
+        mesh.edges_on_vertex,
+        model.sign_on_vertex,
+        mesh.dc_edge,
+        mesh.dv_edge,
+        of_forces,
+    )
+    pressure_energy, pressure_vorticity, *coriolis = of_forces.sum(axis=0).tolist()
+    rates["total_energy_rate_exchange"] = pressure_energy + energy
+    rates["absolute_vorticity_rate_gradient"] = pressure_vorticity
+    rates["total_energy_rate_coriolis"], rates["absolute_vorticity_rate_coriolis"] = coriolis[:2]
+    rates["potential_enstrophy_rate_coriolis"] = coriolis[2] + enstrophy
     if model.anticipation > 0.0:
-        anticipation = work(model.anticipated_acceleration(state)).potential_enstrophy
+        anticipation = _work(model, state, q, model.anticipated_acceleration(state)).potential_enstrophy
         rates["potential_enstrophy_rate_anticipation"] = anticipation
         rates["potential_enstrophy_rate_coriolis"] -= anticipation
     if dissipation is not None:
-        for integral, rate in vars(work(dissipation.acceleration(state.normal_velocity))).items():
+        for integral, rate in vars(_work(model, state, q, dissipation.acceleration(u))).items():
             rates[rate_name(integral, "dissipation")] = rate
     return rates
 
@@ -147,8 +143,9 @@ def rates_of_time(row: Mapping[str, float], before: Mapping[str, float] | None) 
     return rates
 
 
-def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acceleration: Array) -> _Work:
-    mesh, sums = model.mesh, np.empty((kernels.BLOCKS, 3))
+def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, acceleration: Array) -> _Work:
+    mesh, flux, sums = model.mesh, np.empty(model.mesh.n_edges), np.empty((kernels.BLOCKS, 3))
+    kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, flux)
     kernels.work_of(
         acceleration,
         flux,

@@ -22,25 +22,38 @@ def exact_sum(values: Array) -> float:
 
     Every value is an integer times a power of two, and is added as such to a long integer of `WORDS` words.
     """
-    words, finite = _words(np.ascontiguousarray(values).view(np.int64))
-    if not finite.all():
-        return float(values.sum())
+    return exact_sums(values[None])[0]
+
+
+def exact_sums(rows: Array) -> list[float]:
+    """Sum of each of `rows` (k, n), see `exact_sum`."""
+    words, finite = _words(np.ascontiguousarray(rows).view(np.int64))
+    return [
+        _rounded(words[:, row].sum(axis=0)) if finite[:, row].all() else float(rows[row].sum())
+        for row in range(len(rows))
+    ]
+
+
+def _rounded(words: Index) -> float:
+    """The double nearest to the number that words (WORDS,) with carries make."""
     total = 0
-    for word in reversed(words.sum(axis=0).tolist()):
+    for word in reversed(words.tolist()):
         total = (total << WORD) + word
     return total / (1 << -LOWEST_EXPONENT)
 
 
 @numba.njit(cache=True, parallel=True)
 def _words(bits: Index) -> tuple[Index, Index]:
-    """Words (PARTS, WORDS) of the sums of parts of doubles given by their bits, the lowest first, with carries.
+    """Words (PARTS, k, WORDS), lowest first and with carries, of the sums of parts of k rows of doubles.
 
-    And which of the parts (PARTS,) have finite values only.
+    The doubles are given by their bits. And which of the parts (PARTS, k) have finite values only.
     """
-    words, finite = np.zeros((PARTS, WORDS), np.int64), np.ones(PARTS, np.int64)
+    k, size = bits.shape
+    words, finite = np.zeros((PARTS, k, WORDS), np.int64), np.ones((PARTS, k), np.int64)
     for part in numba.prange(PARTS):
-        first, last = part * bits.size // PARTS, (part + 1) * bits.size // PARTS
-        finite[part] = _add(bits[first:last], words[part])
+        first, last = part * size // PARTS, (part + 1) * size // PARTS
+        for row in range(k):
+            finite[part, row] = _add(bits[row, first:last], words[part, row])
     return words, finite
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from swe import kernels
-from swe.exact_sum import exact_sum
+from swe.exact_sum import exact_sum, exact_sums
 from swe.model import Diagnosis, ShallowWaterModel
 from swe.state import State
 
@@ -59,8 +59,8 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     kernels.vorticities(
         mesh.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
     )
-    kinetic, potential, available, of_depth = map(exact_sum, on_cells)
-    absolute_vorticity, enstrophy = map(exact_sum, on_vertices)
+    kinetic, potential, available, of_depth = exact_sums(on_cells)
+    absolute_vorticity, enstrophy = exact_sums(on_vertices)
     return Invariants(
         mass=mass,
         kinetic_energy=kinetic,

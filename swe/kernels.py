@@ -177,9 +177,9 @@ def anticipate(
 def energy_along(
     h: Array,
     u: Array,
+    h_after: Array,
+    u_after: Array,
     height: Array,
-    p: Array,
-    v: Array,
     g: float,
     A: Array,
     dv_edge: Array,
@@ -189,22 +189,40 @@ def energy_along(
 ) -> None:
     """Parts (blocks, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v.
 
-    The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges and of g A_i h_i (h_i/2 + height_i) over cells.
+    The increments p and v lead to `h_after` and `u_after`. The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges
+    and of g A_i h_i (h_i/2 + height_i) over cells.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
         first = second = third = 0.0
         for e in range(k * u.size // blocks, (k + 1) * u.size // blocks):
             i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
-            h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * (p[i] + p[j])
+            h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * ((h_after[i] - h[i]) + (h_after[j] - h[j]))
+            v = u_after[e] - u[e]
             half = 0.5 * dv_edge[e] * dc_edge[e]
-            first += half * u[e] * (2.0 * h_e * v[e] + p_e * u[e])
-            second += half * v[e] * (h_e * v[e] + 2.0 * p_e * u[e])
-            third += half * v[e] * v[e] * p_e
+            first += half * u[e] * (2.0 * h_e * v + p_e * u[e])
+            second += half * v * (h_e * v + 2.0 * p_e * u[e])
+            third += half * v * v * p_e
         for i in range(k * h.size // blocks, (k + 1) * h.size // blocks):
-            first += g * A[i] * p[i] * (h[i] + height[i])
-            second += 0.5 * g * A[i] * p[i] * p[i]
+            p = h_after[i] - h[i]
+            first += g * A[i] * p * (h[i] + height[i])
+            second += 0.5 * g * A[i] * p * p
         sums[k, 0], sums[k, 1], sums[k, 2] = first, second, third
+
+
+@compiled
+def move_along(h: Array, u: Array, h_after: Array, u_after: Array, factor: float) -> int:
+    """Move h and u by `factor` of their way to `h_after` and `u_after`; give the number of unsound values, as below."""
+    count = 0
+    for i in numba.prange(h.size):
+        h[i] += factor * (h_after[i] - h[i])
+        if not (0.0 < h[i] < np.inf):
+            count += 1
+    for e in numba.prange(u.size):
+        u[e] += factor * (u_after[e] - u[e])
+        if not np.isfinite(u[e]):
+            count += 1
+    return count
 
 
 @compiled
@@ -328,11 +346,49 @@ def work_of_transport(
 
 
 @compiled
-def gradient_force(
-    h: Array, b: Array, K: Array, g: float, cells_on_edge: Index, dc_edge: Array, B: Array, force: Array
-) -> None:
-    """The Bernoulli function B_i = g (h_i + b_i) + K_i at cells, and minus its gradient at edges."""
+def bernoulli(h: Array, b: Array, K: Array, g: float, B: Array) -> None:
+    """B_i = g (h_i + b_i) + K_i at cells."""
     for i in numba.prange(B.size):
         B[i] = g * (h[i] + b[i]) + K[i]
-    for e in numba.prange(force.size):
-        force[e] = (B[cells_on_edge[e, 0]] - B[cells_on_edge[e, 1]]) / dc_edge[e]
+
+
+@compiled
+def work_of_forces(
+    h: Array,
+    u: Array,
+    du: Array,
+    B: Array,
+    q: Array,
+    cells_on_edge: Index,
+    edges_on_vertex: Index,
+    sign: Array,
+    dc_edge: Array,
+    dv_edge: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 5) of what minus the gradient of B, and what else is in du, do: see `work_of`.
+
+    To energy and absolute vorticity the former, to these and potential enstrophy the latter. The gradient's share of
+    potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        energy = vorticity = other_energy = other_vorticity = other_enstrophy = 0.0
+        for e in range(k * u.size // blocks, (k + 1) * u.size // blocks):
+            i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
+            outflow = dv_edge[e] * (0.5 * (h[i] + h[j]) * u[e])
+            drop = B[i] - B[j]
+            energy += outflow * drop
+            other_energy += outflow * (dc_edge[e] * du[e] - drop)
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            circulation = other_circulation = 0.0
+            for m in range(3):
+                e = edges_on_vertex[v, m]
+                drop = B[cells_on_edge[e, 0]] - B[cells_on_edge[e, 1]]
+                circulation += sign[v, m] * drop
+                other_circulation += sign[v, m] * (dc_edge[e] * du[e] - drop)
+            vorticity += circulation
+            other_vorticity += other_circulation
+            other_enstrophy += q[v] * other_circulation
+        sums[k, 0], sums[k, 1] = energy, vorticity
+        sums[k, 2], sums[k, 3], sums[k, 4] = other_energy, other_vorticity, other_enstrophy

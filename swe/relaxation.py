@@ -30,15 +30,15 @@ class Relaxation:
         # Mass is conserved, so heights may count from any level; from the mean one their products are small.
         self._height = model.topography - mean_level(model, state)
 
-    def coefficients(self, state: State, increment: State) -> tuple[float, float, float]:
-        """e_1, e_2 and e_3 of the change of energy along `increment` from `state`, m5/s2."""
+    def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
+        """e_1, e_2 and e_3 of the change of energy along the increment from `state` to `after`, m5/s2."""
         mesh, sums = self._model.mesh, np.empty((kernels.BLOCKS, 3))
         kernels.energy_along(
             state.thickness,
             state.normal_velocity,
+            after.thickness,
+            after.normal_velocity,
             self._height,
-            increment.thickness,
-            increment.normal_velocity,
             self._model.gravity,
             mesh.area_cell,
             mesh.dv_edge,
@@ -49,9 +49,9 @@ class Relaxation:
         first, second, third = sums.sum(axis=0).tolist()
         return first, second, third
 
-    def factor(self, state: State, increment: State) -> float:
-        """The factor of `increment` with which the energy stays that of `state`."""
-        first, second, third = self.coefficients(state, increment)
+    def factor(self, state: State, after: State) -> float:
+        """The factor of the increment from `state` to `after` with which the energy stays that of `state`."""
+        first, second, third = self.coefficients(state, after)
         off = 0.0  # the factor less one
         for _ in range(NEWTON_STEPS):
             slope = second + 2.0 * third * (1.0 + off)

@@ -2,9 +2,8 @@
 
 from typing import Protocol
 
-from mesh.arrays import Array
 from swe.dissipation import BiharmonicDissipation
-from swe.kernels import add_scaled, count_unsound
+from swe.kernels import count_unsound, move_along
 from swe.relaxation import Relaxation
 from swe.schedule import equal_step, steps_towards
 from swe.state import State
@@ -90,7 +89,7 @@ class RelaxedSteps:
         self._method = method
         self._relaxation = relaxation
         self._dissipation = dissipation
-        self._increment = state.empty_like()
+        self._after = state.empty_like()
         self.unsound = 0
 
     def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
@@ -109,21 +108,20 @@ class RelaxedSteps:
         if step == event - time:
             factor, step = self._land(state, factor, step)
             following = event
-        for values, increment in zip(_arrays(state), _arrays(self._increment), strict=True):
-            add_scaled(values, factor, increment, values)
+        self.unsound = move_along(
+            state.thickness, state.normal_velocity, self._after.thickness, self._after.normal_velocity, factor
+        )
         if self._dissipation is not None:
             self._dissipation.apply(state.normal_velocity, factor * step)
-        self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            self.unsound = count_unsound(state.thickness, state.normal_velocity)
         return following
 
     def _try(self, state: State, step: float) -> float:
-        """Leave the increment of a step of `step` seconds in its place, and give its factor."""
-        for values, increment in zip(_arrays(state), _arrays(self._increment), strict=True):
-            increment[:] = values
-        self._method.advance(self._increment, step)
-        for values, increment in zip(_arrays(state), _arrays(self._increment), strict=True):
-            add_scaled(increment, -1.0, values, increment)
-        return self._relaxation.factor(state, self._increment)
+        """Find the state after a step of `step` seconds, and give the factor of the increment that leads there."""
+        self._after.thickness[:] = state.thickness
+        self._after.normal_velocity[:] = state.normal_velocity
+        self._method.advance(self._after, step)
+        return self._relaxation.factor(state, self._after)
 
     def _land(self, state: State, factor: float, remaining: float) -> tuple[float, float]:
         """Find the step whose scaled length is `remaining` seconds by secants; gives its factor and length."""
@@ -138,7 +136,3 @@ class RelaxedSteps:
             if excess != excess_before:
                 following = step - excess * (step - before) / (excess - excess_before)
         return factor, step
-
-
-def _arrays(state: State) -> tuple[Array, Array]:
-    return state.thickness, state.normal_velocity

@@ -181,7 +181,7 @@ def test_bad_input_is_one_sentence_and_code_2(trisk, mesh_file: Path, tmp_path: 
         (("mesh", "--cells", 42, "-o", tmp_path / "absent" / "x.nc"), "cannot be written"),
         (("mesh", "-o", tmp_path / "x.nc"), "give --cells N"),
         (("mesh", "--cells", 10**14, "-o", tmp_path / "x.nc"), "too many half-edges"),
-        (("mesh", "--cells", 42, "--tolerance", "inf", "-o", tmp_path / "x.nc"), "positive and finite"),
+        (("mesh", "--cells", 42, "--tolerance", "inf", "-o", tmp_path / "x.nc"), "it must be positive"),
         (("mesh", "--nested", mesh_file, "--start", "random", "-o", tmp_path / "x.nc"), "do not go with --nested"),
         (("mesh", "--cells", 42, "--density", "dense", "-o", tmp_path / "x.nc"), "no density named 'dense'"),
         (("plot", tmp_path), "holds no readable run"),

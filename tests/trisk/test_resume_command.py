@@ -22,7 +22,7 @@ def mesh_file(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> Path:
 def test_a_signal_leaves_a_checkpoint_and_resume_goes_on(
     trisk, mesh_file: Path, tmp_path: Path, number: signal.Signals
 ) -> None:
-    options = ("--days", "300", "--dt", "1200", "--snapshot-hours", "480", "-q")
+    options = ("--days", "100", "--dt", "1200", "--snapshot-hours", "480", "-q")
     command = [sys.executable, "-m", "trisk", "run", "williamson5", "--mesh", str(mesh_file), "-o"]
     run = subprocess.Popen([*command, str(tmp_path / "run"), *options], stderr=subprocess.PIPE, text=True)
     while not (tmp_path / "run" / "diagnostics.nc").exists():
@@ -36,7 +36,7 @@ def test_a_signal_leaves_a_checkpoint_and_resume_goes_on(
     assert err.endswith(f"; its checkpoint is in {tmp_path / 'run'}\n")
     record = json.loads((tmp_path / "run" / "run.json").read_text())
     assert record["status"] == "interrupted"
-    assert 0 < record["steps"] < 300 * 72
+    assert 0 < record["steps"] < 100 * 72
     code, _, err = trisk("run", "williamson5", "-o", tmp_path / "run", "--resume", "--cells", 162, *options)
     assert code == 2
     assert "mesh.nc has 642 cells, not 162; give the same options" in err
