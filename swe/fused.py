@@ -4,9 +4,9 @@ import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
+from swe import tile_kernels
 from swe.model import ShallowWaterModel
 from swe.state import State
-from swe.tile_kernels import MIRROR, rk4_steps, stage
 from swe.tiles import Tiles, build_tiles
 
 
@@ -48,7 +48,7 @@ class FusedRungeKutta:
         """
         tiles, model = self.tiles, self.model
         h, u = self._in_order(state)
-        taken: int = rk4_steps(
+        taken: int = tile_kernels.rk4_steps(
             *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, (h, u), *self._stages),
             *(time_step, steps, self._unsound),
         )
@@ -62,10 +62,8 @@ class FusedRungeKutta:
         slope = (result.thickness, result.normal_velocity) if in_order else self._stages[0]
         for values in slope:
             values.fill(0.0)
-        stage(
-            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, slope, self._in_order(state)),
-            *(slope, slope, slope, 1.0, 1.0, False, self._unsound),
-        )
+        moving, at = not model.prescribed_wind, self._in_order(state)
+        tile_kernels.tendency(tiles.arrays, self._scratch, model.gravity, moving, at, slope, self._unsound)
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:
@@ -94,5 +92,12 @@ def _scratch(tiles: Tiles) -> tuple[Array, ...]:
     the tendencies of both.
     """
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
-    sizes = (most.cells, MIRROR + most.edges, most.vertices, most.sides, most.computed_cells, most.own_edges)
+    sizes = (
+        most.cells,
+        tile_kernels.MIRROR + most.edges,
+        most.vertices,
+        most.sides,
+        most.computed_cells,
+        most.own_edges,
+    )
     return tuple(np.zeros((threads, size)) for size in sizes)

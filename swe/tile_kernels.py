@@ -355,6 +355,14 @@ def stage(
 
 
 @numba.njit(cache=True, **options)
+def tendency(
+    tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, at: Arrays, slope: Arrays, unsound: Index
+) -> None:
+    """Write the slope at the state `at` into `slope`, which is zero, both in the order of the tiles."""
+    stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, False, unsound)
+
+
+@numba.njit(cache=True, **options)
 def rk4_steps(
     tiles: TileArrays,
     scratch: Arrays,
