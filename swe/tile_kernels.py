@@ -272,14 +272,13 @@ def _stage_of_tile(
     result: Arrays,
     time_step: float,
     weight: float,
-    last: bool,
     unsound: Index,
 ) -> None:
     """Tendency and update of one tile; see `stage`."""
     _tendency_of_tile(tile, thread, tiles, scratch, gravity, moving, at[0], at[1])
     dh, du = scratch[4][thread], scratch[5][thread]
     cell, next_cell, edge, next_edge = tiles[0][tile], tiles[0][tile + 1], tiles[1][tile], tiles[1][tile + 1]
-    if last:
+    if weight == 0.0:
         _add_weighted_slopes(cell, next_cell, y[0], second[0], third[0], at[0], time_step, dh)
         _add_weighted_slopes(edge, next_edge, y[1], second[1], third[1], at[1], time_step, du)
         unsound[tile] = _count_unsound(cell, next_cell, y[0], 0.0) + _count_unsound(edge, next_edge, y[1], -np.inf)
@@ -325,13 +324,12 @@ def stage(
     result: Arrays,
     time_step: float,
     weight: float,
-    last: bool,
     unsound: Index,
 ) -> None:
     """One stage of a step from y, with the slope k at the state `at`.
 
-    A stage before the last writes y + weight dt k into `result`; the last one replaces y by the state after the step,
-    leaves `result` alone and counts unsound values.
+    A stage before the last writes y + weight dt k into `result`; the last one, of weight 0, replaces y by the state
+    after the step, leaves `result` alone and counts unsound values.
     """
     for tile in numba.prange(unsound.size):
         use_widest_vectors()  # type: ignore[call-arg]
@@ -349,7 +347,6 @@ def stage(
             result,
             time_step,
             weight,
-            last,
             unsound,
         )
 
@@ -359,7 +356,7 @@ def tendency(
     tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, at: Arrays, slope: Arrays, unsound: Index
 ) -> None:
     """Write the slope at the state `at` into `slope`, which is zero, both in the order of the tiles."""
-    stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, False, unsound)
+    stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
 
 
 @numba.njit(cache=True, **options)
@@ -385,10 +382,10 @@ def rk4_steps(
     """
     dt = time_step
     for taken in range(1, count + 1):
-        stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, False, unsound)
-        stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, False, unsound)
-        stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, False, unsound)
-        stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, True, unsound)
+        stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, unsound)
+        stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, unsound)
+        stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, unsound)
+        stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, unsound)
         if np.any(unsound > 0):
             return taken
     return count
