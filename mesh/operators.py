@@ -10,7 +10,7 @@ import numba
 import numpy as np
 from scipy.sparse import coo_array, csr_array
 
-from mesh.arrays import Array, Index, sum_by_index
+from mesh.arrays import Array, Index
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -158,5 +158,32 @@ def _velocity_at_cells(
 
 def vertex_to_cell(mesh: VoronoiMesh, values: Array) -> Array:
     """Kite-weighted mean (n_cells,) of values at the vertices (n_vertices,) of each cell."""
-    weighted = mesh.kite_areas_on_vertex * values[:, None]
-    return sum_by_index(mesh.cells_on_vertex, weighted, mesh.n_cells) / mesh.area_cell
+    return _vertex_to_cell(
+        values,
+        mesh.n_edges_on_cell,
+        mesh.vertices_on_cell,
+        mesh.cells_on_vertex,
+        mesh.kite_areas_on_vertex,
+        mesh.area_cell,
+    )
+
+
+@numba.njit(cache=True, parallel=True)
+def _vertex_to_cell(
+    values: Array,
+    n_edges_on_cell: Index,
+    vertices_on_cell: Index,
+    cells_on_vertex: Index,
+    kite_areas_on_vertex: Array,
+    area_cell: Array,
+) -> Array:
+    means = np.empty(len(area_cell))
+    for c in numba.prange(len(area_cell)):
+        total = 0.0
+        for j in range(n_edges_on_cell[c]):
+            v = vertices_on_cell[c, j]
+            for k in range(3):
+                if cells_on_vertex[v, k] == c:
+                    total += kite_areas_on_vertex[v, k] * values[v]
+        means[c] = total / area_cell[c]
+    return means

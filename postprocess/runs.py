@@ -1,6 +1,5 @@
 """Read what a run left in its directory."""
 
-import json
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +15,7 @@ from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
-from swe.output import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, RECORD_FILE, read_series
+from swe.output import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, load_record, read_series
 
 DAY_TOLERANCE = 1e-6
 """Snapshots less than this apart, in days, are of the same day."""
@@ -83,9 +82,7 @@ class Run:
 def read_run(directory: Path) -> Run:
     """Open a run directory; raise `SetupError` where it holds no run, `MeshError` where its mesh is not valid."""
     try:
-        record = json.loads((directory / RECORD_FILE).read_text())
-        if not isinstance(record, dict):
-            raise TypeError(f"{RECORD_FILE} is not the record of a run")
+        record = load_record(directory)
         series = read_series(directory / DIAGNOSTICS_FILE)
         with netCDF4.Dataset(directory / HISTORY_FILE) as file:
             days = np.asarray(file["time"][:]) / SECONDS_PER_DAY

@@ -17,7 +17,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs import Run, read_run
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, SetupError
-from swe.output import RECORD_FILE
+from swe.output import load_record
 from swe.simulation import Simulation
 
 TABLE_FILE = "study.csv"
@@ -101,7 +101,7 @@ class Task:
 
     def _is_recorded(self) -> bool:
         try:
-            record = json.loads((self.directory / RECORD_FILE).read_text())
+            record = load_record(self.directory)
             configuration = record["configuration"]
             return bool(
                 record["status"] == "completed"

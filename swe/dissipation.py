@@ -18,9 +18,7 @@ class BiharmonicDissipation:
     def __init__(self, model: ShallowWaterModel, coefficient: float) -> None:
         mesh = model.mesh
         self.coefficient = coefficient
-        self._mesh = mesh
-        self._sign_on_cell = kernels.edge_signs_on_cell(mesh)
-        self._sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
+        self._model = model
         self._divergence = np.empty(mesh.n_cells)
         self._vorticity = np.empty(mesh.n_vertices)
         self._once, self._twice = np.empty(mesh.n_edges), np.empty(mesh.n_edges)
@@ -43,7 +41,7 @@ class BiharmonicDissipation:
         By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, the gradient
         of curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
         """
-        mesh = self._mesh
+        mesh = self._model.mesh
         flow, circulation = mesh.dv_edge / mesh.dc_edge, mesh.dc_edge / mesh.dv_edge
         at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
         at_vertices = circulation[mesh.edges_on_vertex].sum(axis=1) / mesh.area_triangle
@@ -53,18 +51,18 @@ class BiharmonicDissipation:
 
     def laplacian(self, velocity: Array, result: Array) -> None:
         """Write lap u at edges (n_edges,), 1/(m s), into `result`."""
-        mesh = self._mesh
+        model, mesh = self._model, self._model.mesh
         kernels.thickness_tendency(
             velocity,
             mesh.n_edges_on_cell,
             mesh.edges_on_cell,
-            self._sign_on_cell,
+            model.sign_on_cell,
             mesh.dv_edge,
             mesh.area_cell,
             self._divergence,
         )
         kernels.relative_vorticity(
-            velocity, mesh.edges_on_vertex, self._sign_on_vertex, mesh.dc_edge, mesh.area_triangle, self._vorticity
+            velocity, mesh.edges_on_vertex, model.sign_on_vertex, mesh.dc_edge, mesh.area_triangle, self._vorticity
         )
         kernels.vector_laplacian(
             self._divergence,

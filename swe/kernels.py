@@ -128,27 +128,6 @@ def velocity_tendency(
 
 
 @compiled
-def mean_of_kites(
-    q: Array,
-    n_edges_on_cell: Index,
-    vertices_on_cell: Index,
-    cells_on_vertex: Index,
-    kites: Array,
-    area_cell: Array,
-    q_cell: Array,
-) -> None:
-    """q_i = 1/A_i sum_v kite_vi q_v at cells."""
-    for i in numba.prange(q_cell.size):
-        total = 0.0
-        for j in range(n_edges_on_cell[i]):
-            v = vertices_on_cell[i, j]
-            for k in range(3):
-                if cells_on_vertex[v, k] == i:
-                    total += kites[v, k] * q[v]
-        q_cell[i] = total / area_cell[i]
-
-
-@compiled
 def anticipate(
     u: Array,
     q: Array,

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.operators import vertex_to_cell
 from mesh.voronoi_mesh import VoronoiMesh
 from swe import kernels
 from swe.errors import SetupError
@@ -46,8 +47,9 @@ class ShallowWaterModel:
     anticipation
         Seconds by which the tendency anticipates potential vorticity, q_e - anticipation (u . grad q)_e in the Coriolis
         force (Sadourny and Basdevant 1985); 0 unless it is set.
-    sign_on_vertex
-        Signs of circulations round vertices, see `kernels.edge_signs_on_vertex`.
+    sign_on_vertex, sign_on_cell
+        Signs of circulations round vertices and of outflows of cells, see `kernels.edge_signs_on_vertex` and
+        `kernels.edge_signs_on_cell`.
     area, bottom_volume, planetary_vorticity_magnitude
         Area of the sphere, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
         m2/s.
@@ -80,7 +82,7 @@ class ShallowWaterModel:
     # The plain tendency alone needs these; a run takes the fused path and saves their memory.
 
     @cached_property
-    def _sign_on_cell(self) -> Array:
+    def sign_on_cell(self) -> Array:
         return kernels.edge_signs_on_cell(self.mesh)
 
     @cached_property
@@ -106,7 +108,7 @@ class ShallowWaterModel:
             F,
             mesh.n_edges_on_cell,
             mesh.edges_on_cell,
-            self._sign_on_cell,
+            self.sign_on_cell,
             mesh.dv_edge,
             mesh.area_cell,
             result.thickness,
@@ -137,20 +139,11 @@ class ShallowWaterModel:
 
     def _anticipate(self, state: State, q_edge: Array) -> None:
         """Take what is anticipated from `q_edge`; potential vorticity at vertices is there already."""
-        mesh, q_cell = self.mesh, np.empty(self.mesh.n_cells)
-        kernels.mean_of_kites(
-            self._potential_vorticity,
-            mesh.n_edges_on_cell,
-            mesh.vertices_on_cell,
-            mesh.cells_on_vertex,
-            mesh.kite_areas_on_vertex,
-            mesh.area_cell,
-            q_cell,
-        )
+        mesh, q = self.mesh, self._potential_vorticity
         kernels.anticipate(
             state.normal_velocity,
-            self._potential_vorticity,
-            q_cell,
+            q,
+            vertex_to_cell(mesh, q),
             self.anticipation,
             mesh.cells_on_edge,
             mesh.vertices_on_edge,

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
+from typing import Any
 
 import netCDF4
 import numpy as np
@@ -238,16 +239,21 @@ class DiagnosticsFile(_TimeFile):
 def read_record(directory: Path) -> dict[str, object] | None:
     """What `run.json` holds, None where there is none; raise `SetupError` where it is no record of a run."""
     path = directory / RECORD_FILE
-    if path.exists() and not path.is_file():
-        raise SetupError(f"{path} is no file; remove it or choose another directory")
     try:
-        record = json.loads(path.read_text())
+        return load_record(directory)
     except (FileNotFoundError, NotADirectoryError):
         return None
+    except TypeError as error:
+        raise SetupError(f"{path} is no record of a run; remove it or choose another directory") from error
     except (OSError, ValueError, RecursionError) as error:
         raise SetupError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
+
+
+def load_record(directory: Path) -> dict[str, Any]:
+    """What `run.json` holds; raises what comes of reading it, or `TypeError`, where it is no record."""
+    record = json.loads((directory / RECORD_FILE).read_text())
     if not isinstance(record, dict):
-        raise SetupError(f"{path} is no record of a run; remove it or choose another directory")
+        raise TypeError(f"{RECORD_FILE} is not the record of a run")
     return record
 
 

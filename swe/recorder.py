@@ -48,7 +48,7 @@ class Recorder:
 
     def __init__(self, simulation: "Simulation", directory: Path, overwrite: bool, resume: bool) -> None:
         self.directory = directory
-        self.resumed = False
+        self._days = 0.0
         self._days_before: float | None = None
         self._seconds_before = 0.0
         self._description = _description(simulation)
@@ -62,7 +62,11 @@ class Recorder:
         self._began = False
         if self._found is not None:
             self._require_same(self._found)
-            self.resumed = True
+
+    @property
+    def resumed(self) -> bool:
+        """Whether the run goes on from what an earlier one left."""
+        return self._found is not None
 
     def _require_same(self, before: dict[str, object]) -> None:
         """Raise `SetupError` where the run of an earlier record was made otherwise; take over its days and time."""
@@ -110,7 +114,7 @@ class Recorder:
     @contextmanager
     def recording(self, simulation: "Simulation", days: float) -> Iterator[None]:
         """Keep the files open in the course of a run to `days`, and write how it ended."""
-        self._days_before = None
+        self._days, self._days_before = days, None
         self._begun = clock.perf_counter()
         self._make_directory()
         with held(self.directory) as free:
@@ -118,7 +122,7 @@ class Recorder:
                 raise SetupError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
             self._require_unchanged()
             try:
-                self._open(simulation, days)
+                self._open(simulation)
                 yield
                 self._close()
             except SetupError:
@@ -126,20 +130,19 @@ class Recorder:
                 raise
             except BaseException as error:
                 stopped = isinstance(error, RunStopped | KeyboardInterrupt)
-                self._end(simulation, days, "interrupted" if stopped else "failed", str(error))
+                self._end(simulation, "interrupted" if stopped else "failed", str(error))
                 raise
-            self._end(simulation, days, "completed")
+            self._end(simulation, "completed")
 
-    def _open(self, simulation: "Simulation", days: float) -> None:
+    def _open(self, simulation: "Simulation") -> None:
         """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
         remove_leftovers(self.directory, (*FILES, PATTERN))
-        self._days = days
         history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
         starting, reached = simulation.steps == 0, self._reached
         if starting:
             remove_checkpoints(self.directory)
             (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
-            self._write_status(simulation, days, "running")
+            self._write_status(simulation, "running")
             create_history(history, simulation.mesh, simulation.model.topography)
             create_diagnostics(diagnostics)
         if reached is None:
@@ -148,8 +151,9 @@ class Recorder:
             self._history = HistoryFile(history, reached.snapshots, reached.history_size)
             self._diagnostics = DiagnosticsFile(diagnostics, reached.rows, reached.diagnostics_size)
             self._reached = None
-        self._write_status(simulation, days, "running")
-        self._write_mesh(simulation)
+        self._write_status(simulation, "running")
+        if starting or reached is not None:
+            self._write_mesh(simulation)
         if starting:
             self.record(simulation, True, True)
 
@@ -207,7 +211,7 @@ class Recorder:
                 self._diagnostics.size,
             ),
         )
-        self._write_status(simulation, self._days, "running")
+        self._write_status(simulation, "running")
 
     def _close(self) -> None:
         for file in (self._history, self._diagnostics):
@@ -215,7 +219,7 @@ class Recorder:
                 file.close()
         self._history = self._diagnostics = None
 
-    def _end(self, simulation: "Simulation", days: float, status: str, reason: str = "") -> None:
+    def _end(self, simulation: "Simulation", status: str, reason: str = "") -> None:
         """Close what is open and write the final status, however little of it the disk takes."""
         try:
             self._close()
@@ -223,13 +227,13 @@ class Recorder:
             if status == "completed":
                 raise
         if self.directory.is_dir():
-            self._write_status(simulation, days, status, reason)
+            self._write_status(simulation, status, reason)
 
-    def _write_status(self, simulation: "Simulation", days: float, status: str, reason: str = "") -> None:
+    def _write_status(self, simulation: "Simulation", status: str, reason: str = "") -> None:
         record = {
             "status": status,
             "reason": reason,
-            "days": days,
+            "days": self._days,
             "day_reached": simulation.time / SECONDS_PER_DAY,
             "steps": simulation.steps,
             "wall_seconds": self._seconds_before + clock.perf_counter() - self._begun,

@@ -1,6 +1,5 @@
 """What commands print: progress of the mesh generation, and tables of results."""
 
-import json
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,7 +11,7 @@ from rich.table import Table
 
 from mesh import VoronoiMesh, mesh_quality
 from mesh.optimizer import Callback, Iterate
-from swe.output import DIAGNOSTICS_FILE, RECORD_FILE, read_series
+from swe.output import DIAGNOSTICS_FILE, load_record, read_series
 
 
 @contextmanager
@@ -86,7 +85,7 @@ def print_table1(max_level: int, output: Path | None) -> None:
 
 def print_run(directory: Path) -> None:
     """Print the summary of a finished run as a table, and where its files are."""
-    record = json.loads((directory / RECORD_FILE).read_text())
+    record = load_record(directory)
     series = read_series(directory / DIAGNOSTICS_FILE)
     last = {name: float(values[-1]) for name, values in series.items()}
     rows = [
