@@ -83,6 +83,7 @@ class ShallowWaterModel:
 
     @cached_property
     def sign_on_cell(self) -> Array:
+        """Signs of outflows of cells (n_cells, max_edges)."""
         return kernels.edge_signs_on_cell(self.mesh)
 
     @cached_property
