@@ -1,4 +1,7 @@
-"""The exception that everything in this package raises for bad input."""
+"""The exception that everything in this package raises for bad input, and the sentence that names entities."""
+
+import numpy as np
+from numpy.typing import NDArray
 
 
 class MeshError(ValueError):
@@ -6,4 +9,14 @@ class MeshError(ValueError):
 
 
 class MeshWarning(UserWarning):
-    """A mesh is usable, but less exact than this package's own meshes; the message gives the residual."""
+    """A mesh is usable, but less exact than our own, or parts of it were rebuilt; the message says how much."""
+
+
+def require(valid: NDArray[np.bool_], place: str, problem: str) -> None:
+    """Raise `MeshError` unless all rows of `valid` hold; the sentence starts with the rows that do not."""
+    rows = valid if valid.ndim == 1 else valid.all(axis=tuple(range(1, valid.ndim)))
+    if rows.all():
+        return
+    wrong = np.flatnonzero(~rows)
+    named = ", ".join(str(row) for row in wrong[:3]) + (f" and {len(wrong) - 3} more" if len(wrong) > 3 else "")
+    raise MeshError(f"{place} {named} (counted from 0): {problem}")

@@ -18,7 +18,8 @@ from mesh.files import written_aside
 from mesh.metrics import compute_metrics
 from mesh.sphere import normalize, to_lonlat
 from mesh.topology import FILL
-from mesh.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_mesh, validate_topology
+from mesh.connectivity import validate_topology
+from mesh.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_mesh
 from mesh.voronoi_mesh import METRICS_NAMES, VoronoiMesh
 
 PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}

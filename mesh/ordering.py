@@ -30,10 +30,15 @@ def inverse_order(order: Index) -> Index:
 
 def sort_triangles(triangles: Index) -> Index:
     """Triangles (m, 3), int32, turned so that the lowest corner comes first, and sorted."""
+    turned = turn_triangles(triangles)
+    return np.ascontiguousarray(turned[np.lexsort((turned[:, 1], turned[:, 0]))], dtype=np.int32)
+
+
+def turn_triangles(triangles: Index) -> Index:
+    """Triangles (m, 3) turned so that the lowest corner comes first."""
     lowest = np.argmin(triangles, axis=1)
     corners = (lowest[:, None] + np.arange(3)) % 3
-    turned = np.take_along_axis(triangles, corners, axis=1)
-    return np.ascontiguousarray(turned[np.lexsort((turned[:, 1], turned[:, 0]))], dtype=np.int32)
+    return np.take_along_axis(triangles, corners, axis=1)
 
 
 @numba.njit(parallel=True, cache=True)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesh.arrays import Index
-from mesh.errors import MeshError
+from mesh.errors import MeshError, require
 from mesh.half_edges import build_twins
 from mesh.ordering import sort_triangles
 from mesh.voronoi_mesh import Topology
@@ -20,10 +20,23 @@ def build_topology(triangles: Index, n_cells: int) -> Topology:
     triangles = sort_triangles(triangles)
     if len(triangles) != 2 * n_cells - 4:
         raise MeshError(f"{n_cells} cells need {2 * n_cells - 4} triangles to close the sphere, not {len(triangles)}")
+    return connect(triangles, n_cells)
+
+
+def connect(triangles: Index, n_cells: int, cells_on_edge: Index | None = None) -> Topology:
+    """Connectivity of the mesh that is dual to these triangles, with vertices numbered as they stand.
+
+    Edges have the numbers and directions of `cells_on_edge` (n_edges, 2) where that is given, else they are numbered
+    after their lowest cells. Rings start at their lowest edge, and `triangles` must start at their lowest cell. Raises
+    `MeshError` where the triangles do not close a sphere, or `cells_on_edge` does not list their sides.
+    """
     twins = build_twins(triangles, n_cells).ravel()
+    if not np.array_equal(twins[twins], np.arange(len(twins))):
+        raise MeshError("some side of a triangle lies between more than two triangles")
     start = np.roll(triangles, -1, axis=1).ravel()
     end = start[twins]
-    edge_of, forward = _number_edges(start, end, twins)
+    forward = _forward_half_edges(start, end) if cells_on_edge is None else _find_half_edges(start, end, cells_on_edge)
+    edge_of = _edge_of_half_edges(forward, twins)
     left, right = forward // 3, twins[forward] // 3
 
     rings = _rings(start, twins, edge_of, n_cells)
@@ -51,14 +64,31 @@ def _index(array: Index) -> Index:
     return np.ascontiguousarray(array, dtype=np.int32)
 
 
-def _number_edges(start: Index, end: Index, twins: Index) -> tuple[Index, Index]:
-    """Edge number of every half-edge, and of every edge its half-edge from the lower to the higher cell."""
+def _forward_half_edges(start: Index, end: Index) -> Index:
+    """Of every edge the half-edge from the lower to the higher cell, in the order of these."""
     forward = np.flatnonzero(start < end)
-    forward = forward[np.lexsort((end[forward], start[forward]))]
-    edge_of = np.empty(len(start), dtype=np.int64)
-    edge_of[forward] = np.arange(len(forward))
-    edge_of[twins[forward]] = np.arange(len(forward))
-    return edge_of, forward
+    return forward[np.lexsort((end[forward], start[forward]))]
+
+
+def _find_half_edges(start: Index, end: Index, cells_on_edge: Index) -> Index:
+    """Of every edge the half-edge from its first to its second cell."""
+    size = np.int64(start.max()) + 1
+    keys = start * size + end
+    order = np.argsort(keys)
+    wanted = cells_on_edge[:, 0] * size + cells_on_edge[:, 1]
+    place = np.minimum(np.searchsorted(keys[order], wanted), len(order) - 1)
+    require(keys[order[place]] == wanted, "edges", "cellsOnEdge names two cells that share no side in cellsOnVertex")
+    return order[place]
+
+
+def _edge_of_half_edges(forward: Index, twins: Index) -> Index:
+    """Edge number of every half-edge, where `forward` has one of the two half-edges of each edge."""
+    edge = np.arange(len(forward))
+    edge_of = np.empty(len(twins), dtype=np.int64)
+    edge_of[forward] = edge
+    edge_of[twins[forward]] = edge
+    require(edge_of[forward] == edge, "edges", "cellsOnEdge names the same two cells as another edge")
+    return edge_of
 
 
 def _rings(start: Index, twins: Index, edge_of: Index, n_cells: int) -> Index:
