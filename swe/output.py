@@ -109,7 +109,7 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 class _TimeFile:
-    """A file that grows along time; `rows` is where the next one goes: after the last, or over what follows `rows`.
+    """A file that grows along time; `rows` are those that stay, all by default, and what follows them is cut off.
 
     Raises `SetupError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
     `size` bytes, or its first `rows` are not those of ascending times.
@@ -119,18 +119,20 @@ class _TimeFile:
         self._path = path
         self._failed = False
         try:
-            self._file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+            self._file = _opened(path)
             present = len(self._file.dimensions["Time"])
             missing = {"time", *names} - set(self._file.variables)
         except (OSError, RuntimeError, KeyError) as error:
             raise SetupError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
-        # Values are written as they are; looking for masks and scales takes as long as writing them.
-        self._file.set_auto_maskandscale(False)
         self.rows = present if rows is None else rows
         times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
         if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
             self._file.close()
             raise SetupError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
+        if self.rows < present:
+            self._file.close()
+            _cut_off(path, self.rows, size)
+            self._file = _opened(path)
         self._file.set_fill_off()
 
     @property
@@ -154,6 +156,22 @@ class _TimeFile:
         """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
         if not self._failed:
             self._file.close()
+
+
+def _opened(path: Path) -> netCDF4.Dataset:
+    """The file, to be read and written."""
+    file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+    # Values are written as they are; looking for masks and scales takes as long as writing them.
+    file.set_auto_maskandscale(False)
+    return file
+
+
+def _cut_off(path: Path, rows: int, size: int) -> None:
+    """Leave the first `rows` rows of a file of the classic format, which has `size` bytes then."""
+    with path.open("r+b") as file:
+        file.seek(4)  # behind the letters that tell the format stands the number of rows
+        file.write(rows.to_bytes(4, "big"))
+        file.truncate(size)
 
 
 class HistoryFile(_TimeFile):
