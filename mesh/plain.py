@@ -15,6 +15,13 @@ def plain(value: object) -> object:
     return value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
 
 
+def recordable(value: object) -> object:
+    """What JSON can hold instead of a scalar or an array of numpy; raise `TypeError` for anything else."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise TypeError(f"{value!r} is neither a number nor words")
+
+
 def plain_number(what: str, value: object, error: type[Exception] = MeshError) -> float:
     """`value` as a float, not always finite; raise `error` where it is no real number."""
     number = plain(value)

@@ -72,14 +72,28 @@ SERIES = {
 }
 """Diagnostics: name -> units, meaning."""
 
+TIME_COORDINATE = "Time"
+
+SCHEME = "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy"
+
 PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
-def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
-    """Make a history file without snapshots; raise `RunError` where it cannot be written."""
+COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVertices": "lonVertex latVertex"}
+"""Where the values at cells, edges and vertices lie, as the CF conventions have it."""
+
+
+def create_history(path: Path, mesh: VoronoiMesh, topography: Array, description: Mapping[str, object]) -> None:
+    """Make a history file without snapshots; raise `RunError` where it cannot be written.
+
+    Attributes name what the `description` of the run tells.
+    """
     with _new_file(path) as file:
-        file.setncatts(mesh_attributes(mesh, "snapshots of a shallow-water run"))
+        file.setncatts({**mesh_attributes(mesh, "snapshots of a shallow-water run"), **_attributes(description)})
         write_mesh_variables(file, mesh, GEOMETRY)
+        for names in COORDINATES.values():
+            longitude, latitude = names.split()
+            file[longitude].standard_name, file[latitude].standard_name = "longitude", "latitude"
         _define_time(file)
         _define(file, "topography", ("nCells",), "m", "height of the bottom")
         file["topography"][:] = topography
@@ -87,12 +101,28 @@ def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
             _define(file, name, ("Time", place), units, long_name)
 
 
-def create_diagnostics(path: Path) -> None:
+def create_diagnostics(path: Path, description: Mapping[str, object]) -> None:
     """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
     with _new_file(path) as file:
+        file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(description)})
         _define_time(file)
         for name, (units, long_name) in SERIES.items():
             _define(file, name, ("Time",), units, long_name)
+
+
+def _attributes(description: Mapping[str, object]) -> dict[str, object]:
+    """Global attributes that tell which run a file is of; nothing that differs between equal runs."""
+    configuration = description["configuration"]
+    assert isinstance(configuration, dict)
+    return {
+        "title": f"{description['case']}, a run of the shallow-water model of trisk",
+        "case": description["case"],
+        "parameters": json.dumps(description["parameters"]),
+        "mesh_hash": description["mesh_hash"],
+        "scheme": SCHEME,
+        **configuration,
+        "trisk_version": package_versions()["trisk"],
+    }
 
 
 @contextmanager
@@ -146,6 +176,8 @@ class _TimeFile:
         try:
             for name, value in values.items():
                 self._file[name][rows] = value
+            if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
+                self._file[TIME_COORDINATE][rows] = values["time"]
             self._file.sync()
         except (OSError, RuntimeError) as error:
             self._failed = True
@@ -295,18 +327,21 @@ def package_versions() -> dict[str, str]:
 def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
     variable = file.createVariable(name, "f8", dimensions)
     variable.setncatts({"units": units, "long_name": long_name})
+    if dimensions[-1] in COORDINATES:
+        variable.coordinates = COORDINATES[dimensions[-1]]
 
 
 def _define_time(file: netCDF4.Dataset) -> None:
+    """Define `time`, and again under the name of the dimension, which makes it a coordinate to select by."""
     file.createDimension("Time", None)
-    time = file.createVariable("time", "f8", ("Time",))
-    time.setncatts(
-        {
-            "units": "seconds since 2000-01-01 00:00:00",
-            "long_name": "time since the start of the run",
-            "standard_name": "time",
-            "calendar": "proleptic_gregorian",
-        }
+    attributes = {
+        "units": "seconds since 2000-01-01 00:00:00",
+        "long_name": "time since the start of the run",
+        "calendar": "proleptic_gregorian",
+    }
+    file.createVariable("time", "f8", ("Time",)).setncatts(attributes)
+    file.createVariable(TIME_COORDINATE, "f8", ("Time",)).setncatts(
+        {**attributes, "standard_name": "time", "axis": "T"}
     )
 
 

@@ -1,6 +1,7 @@
 """What a run leaves in its directory, and how it goes on from there."""
 
 import hashlib
+import json
 import os
 import time as clock
 import warnings
@@ -16,6 +17,7 @@ import numpy as np
 from mesh.errors import MeshError
 from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
+from mesh.plain import recordable
 from swe.budgets import measure_rates
 from swe.checkpoint import (
     PATTERN,
@@ -159,8 +161,8 @@ class Recorder:
             remove_checkpoints(self.directory)
             (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
             self._write_status(simulation, "running")
-            create_history(history, simulation.mesh, simulation.model.topography)
-            create_diagnostics(diagnostics)
+            create_history(history, simulation.mesh, simulation.model.topography, self._description)
+            create_diagnostics(diagnostics, self._description)
         if reached is None:
             self._history, self._diagnostics = HistoryFile(history), DiagnosticsFile(diagnostics)
         else:
@@ -277,10 +279,18 @@ HOW_TO_GO_ON = "give the same options, or another directory"
 
 def _description(simulation: "Simulation") -> dict[str, object]:
     """What a run must have in common with the one that it goes on from, as the record has it."""
+    parameters = simulation.case.parameters()
+    try:
+        recorded = json.loads(json.dumps(parameters, default=recordable))
+    except (TypeError, ValueError, RecursionError) as error:
+        raise SetupError(
+            f"the parameters of {simulation.case.name} cannot be recorded ({error}); give numbers, words, or lists of "
+            "them"
+        ) from error
     return {
         "mesh_hash": mesh_hash(simulation.mesh),
         "case": simulation.case.name,
-        "parameters": simulation.case.parameters(),
+        "parameters": recorded,
         "configuration": asdict(simulation.configuration),
         "start_hash": _start_hash(simulation),
     }

@@ -167,6 +167,7 @@ class Simulation:
         self.checkpoint_interval = options.checkpoint_interval
         self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, step)
         self.initial_invariants = self.invariants
+        self._require_finite_integrals()
         if options.anticipation > 0.0:
             self.model = self.model.anticipating(options.anticipation * step)
         self.dissipation = BiharmonicDissipation(self.model, options.dissipation) if options.dissipation > 0.0 else None
@@ -196,6 +197,15 @@ class Simulation:
         if problem:
             raise SetupError(f"the initial {problem}")
         return state
+
+    def _require_finite_integrals(self) -> None:
+        """Raise `SetupError` where a global integral is beyond the numbers, so that no change of it can be told."""
+        for name, value in vars(self.initial_invariants).items():
+            if not np.isfinite(value):
+                raise SetupError(
+                    f"the initial {name.replace('_', ' ')} is {value:g}, beyond the range of numbers; correct the "
+                    f"parameters of {self.case.name}"
+                )
 
     def set_back_to(self, state: State, time: float, steps: int) -> None:
         """Go on from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""
