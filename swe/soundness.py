@@ -58,10 +58,11 @@ def warning_of_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
     thin = int(np.count_nonzero(vertex_thickness(mesh, thickness) < THIN * around))
     if thin == 0:
         return None
+    vertices = "vertex" if thin == 1 else "vertices"
     return (
-        f"at {thin} {'vertex' if thin == 1 else 'vertices'} of obtuse triangles thickness is less than {THIN:g} of that of the thinnest cell around, "
-        "and may turn negative in the course of the run; a mesh without such triangles (trisk mesh --well-centred) "
-        "would do"
+        f"at {thin} {vertices} of obtuse triangles thickness is less than {THIN:g} of that of the thinnest cell "
+        "around, and may turn negative in the course of the run; a mesh without such triangles (trisk mesh "
+        "--well-centred) would do"
     )
 
 
