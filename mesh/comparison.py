@@ -36,7 +36,7 @@ class Difference:
 
 
 def metric_differences(mesh: VoronoiMesh, exact: Metrics) -> Iterator[Difference]:
-    """Every metric of `mesh` beside `exact`, that of its generators on the unit sphere; angles of edges come last.
+    """Every metric of `mesh` but the angles of edges beside `exact`, that of its generators on the unit sphere.
 
     The local size of a vertex is its distance to the cells; that of an edge is the largest of its own and its
     vertices'. What is not finite differs by infinity.
@@ -64,9 +64,15 @@ def metric_differences(mesh: VoronoiMesh, exact: Metrics) -> Iterator[Difference
         yield _angle(f"lat{name}", f"lat_{place}", place, north, north / size[place])
         turn = _wrapped(_difference(mesh, exact, f"lon_{place}", 1.0))
         yield _angle(f"lon{name}", f"lon_{place}", place, turn, turn * np.cos(latitude) / size[place])
-    # At a pole the longitude is arbitrary, and the angle counts from the east that it defines.
+
+
+def angle_difference(mesh: VoronoiMesh, exact: Metrics) -> Difference:
+    """The angles of edges beside those of the generators.
+
+    At a pole the longitude is arbitrary, and the angle counts from the east that it defines.
+    """
     turn = _wrapped(mesh.angle_edge - angles_in_place(mesh, exact))
-    yield _angle("angleEdge", "angle_edge", "edge", turn, turn)
+    return _angle("angleEdge", "angle_edge", "edge", turn, turn)
 
 
 def angles_in_place(mesh: VoronoiMesh, exact: Metrics) -> Array:

@@ -7,7 +7,7 @@ stay below a tolerance. Errors name the first entities that offend, counted from
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.comparison import metric_differences
+from mesh.comparison import Difference, angle_difference, metric_differences
 from mesh.connectivity import validate_topology
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.errors import MeshError, require
@@ -48,12 +48,8 @@ def validate_metrics(mesh: VoronoiMesh, exact: Metrics | None, tolerance: float)
     Raises `MeshError`.
     """
     _check_delaunay(mesh)
-    for difference in () if exact is None else metric_differences(mesh, exact):
-        require(
-            difference.relative <= OUTSIDE_TOLERANCE,
-            difference.place,
-            f"{difference.label} differs from what the generators give by up to {difference.in_words}; {REBUILD}",
-        )
+    for difference in () if exact is None else (*metric_differences(mesh, exact), angle_difference(mesh, exact)):
+        require_small(difference)
     residuals = identity_residuals(mesh)
     for name, residual in residuals.items():
         if not residual <= tolerance:
@@ -62,6 +58,15 @@ def validate_metrics(mesh: VoronoiMesh, exact: Metrics | None, tolerance: float)
                 "the metrics do not belong together, recompute them from the generators"
             )
     return residuals
+
+
+def require_small(difference: Difference) -> None:
+    """Raise `MeshError` where metrics differ from what the generators give by more than `OUTSIDE_TOLERANCE`."""
+    require(
+        difference.relative <= OUTSIDE_TOLERANCE,
+        difference.place,
+        f"{difference.label} differs from what the generators give by up to {difference.in_words}; {REBUILD}",
+    )
 
 
 def _check_shapes(mesh: VoronoiMesh) -> None:
