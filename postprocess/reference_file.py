@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.registry import find_case
 from mesh.arrays import Array
-from mesh.files import written_aside
+from mesh.files import dataset, written_aside
 from postprocess.harmonics import Coefficients, Harmonics, truncation_of
 from postprocess.reference import MEASURES, Reference
 from postprocess.stored_references import stored_path
@@ -47,7 +47,7 @@ def stored_reference(case: str) -> Reference | None:
 
 def write_reference(reference: Reference, path: Path) -> None:
     """Write `reference`; coefficients are integers times a scale, which readers of NetCDF apply by themselves."""
-    with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
+    with written_aside(path) as aside, dataset(aside, "w", format="NETCDF4") as file:
         n_days, _, n_coefficients = reference.coefficients.shape
         sizes = {
             "day": n_days,
@@ -123,7 +123,7 @@ def _write_variable(
 def read_reference(path: Path) -> Reference:
     """Read a reference; raise `SetupError` where the file is none."""
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             file.set_auto_mask(False)
             parts = np.stack([file[name][:] for name in FIELDS], axis=1)
             return Reference(
