@@ -51,6 +51,11 @@ def dataset(path: str | os.PathLike[str], mode: Mode = "r", **options: Any) -> I
         yield file
 
 
+def name_in_text(name: object) -> str:
+    """The name of a file as text for figures and attributes; bytes that are no text become escapes."""
+    return str(name).encode(errors="backslashreplace").decode()
+
+
 @contextmanager
 def held(folder: Path) -> Iterator[bool]:
     """Hold a folder as long as the context lasts; gives False where another program holds it.

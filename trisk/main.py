@@ -391,8 +391,9 @@ def bench(
 
 
 def _command_line() -> str:
-    """What the user typed, with bytes that are no text written as escapes."""
-    return shlex.join(["trisk", *sys.argv[1:]]).encode(errors="backslashreplace").decode()
+    from mesh.files import name_in_text
+
+    return name_in_text(shlex.join(["trisk", *sys.argv[1:]]))
 
 
 def _warning_line(message: Warning | str, *_: object) -> str:
