@@ -112,7 +112,11 @@ def temporary_folder() -> str:
 
     Raises `OSError` where the system has no folder for temporary files either.
     """
-    folder = tempfile.mkdtemp(prefix="trisk-compiled-")
+    try:
+        folder = tempfile.mkdtemp(prefix="trisk-compiled-")
+    except OSError as error:
+        words = "no folder for compiled functions can be written; set NUMBA_CACHE_DIR to one that can"
+        raise OSError(error.errno, words) from error
     atexit.register(_remove_of, os.getpid(), folder)
     warnings.warn(
         "compiled functions cannot be kept, and are compiled in each process anew; set NUMBA_CACHE_DIR to a folder "

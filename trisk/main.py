@@ -468,5 +468,6 @@ def _in_one_line(error: Exception) -> str:
     if isinstance(error, OSError) and error.filename is None and error.errno in ERRORS_OF_OUTPUT:
         return f"the output cannot be written ({error.strerror}); send it elsewhere, or make room"
     if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}".replace("\n", " ")
+        what = "" if error.filename is None else f"{error.filename}: "
+        return f"{what}{error.strerror}".replace("\n", " ")
     return str(error).replace("\n", " ")

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 import mesh
-from mesh.compiled_cache import ROOT, imported_files, sources_stamp
+from mesh.compiled_cache import ROOT, imported_files, sources_stamp, temporary_folder
 
 CONSTANT = "SHARE = 1.0\n"
 KERNEL = """
@@ -90,3 +90,12 @@ def test_stamps_cover_what_is_imported_through_others() -> None:
     files = {name: ROOT / "mesh" / name for name in ("io.py", "sphere.py", "quality.py")}
     assert len({sources_stamp(file) for file in files.values()}) == 3
     assert ROOT / "mesh" / "quality.py" not in imported_files(ROOT / "swe" / "kernels.py")
+
+
+def test_no_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nowhere(**_: object) -> str:
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    monkeypatch.setattr("tempfile.mkdtemp", nowhere)
+    with pytest.raises(OSError, match="set NUMBA_CACHE_DIR to one that can"):
+        temporary_folder.__wrapped__()
