@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Index
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
 from mesh.errors import MeshError, MeshWarning
-from mesh.files import written_aside
+from mesh.files import dataset, written_aside
 from mesh.metrics import compute_metrics
 from mesh.sphere import normalize, to_lonlat
 from mesh.topology import FILL
@@ -39,7 +39,7 @@ def write_mesh(mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "
     """
     path = Path(path)
     try:
-        with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
+        with written_aside(path) as aside, dataset(aside, "w", format="NETCDF4") as file:
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
             write_mesh_variables(file, mesh)
@@ -93,7 +93,7 @@ def read_mesh(path: str | os.PathLike[str], recompute_metrics: bool = False) -> 
     if path.exists() and not path.is_file():
         raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             file.set_auto_mask(False)
             mesh = _mesh_from_file(file)
         if recompute_metrics:
