@@ -6,6 +6,8 @@ import os
 # threads that sleep cost little where they do not. Must be set before the first parallel kernel loads OpenMP.
 os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
+import mesh.compiled_cache
+import mesh.forks  # noqa: F401
 from mesh.build import mesh_from_points, scvt_mesh
 from mesh.errors import MeshError, MeshWarning
 from mesh.io import read_mesh, write_mesh

@@ -75,7 +75,8 @@ def reordered(arrays: Arrays, topology: Topology) -> list[str]:
 
 def arrange_kites(kites: Array, cells_on_vertex: Index, topology: Topology) -> Array:
     """Kites (n_vertices, 3) of the cells in the order of the file, in that of `topology`."""
-    source = np.argmax(topology.cells_on_vertex[:, :, None] == cells_on_vertex[:, None, :], axis=2)
+    same = np.expand_dims(topology.cells_on_vertex, 2) == np.expand_dims(cells_on_vertex, 1)
+    source = np.argmax(same, axis=2)
     return np.take_along_axis(kites, source, axis=1)
 
 

@@ -17,6 +17,9 @@ from mesh.validate import OUTSIDE_TOLERANCE, check_values, require_on_sphere, re
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
 GENERATORS = ("x_cell", "y_cell", "z_cell")
+MOST_LISTED = 6
+"""Arrays that a warning names."""
+
 ON_EDGES = tuple(name for name, variable in BY_NAME.items() if "n_edges" in (variable.dimensions[0], variable.of))
 """Arrays that mean something only where the edges have the numbers of the file."""
 
@@ -27,16 +30,19 @@ class Changes:
 
     said: list[str] = field(default_factory=list)
     sorted: list[str] = field(default_factory=list)
-    rebuilt: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    replaced: list[str] = field(default_factory=list)
 
     @property
     def in_words(self) -> str:
         """One line, empty where nothing was done."""
         parts = list(self.said)
         if self.sorted:
-            parts.append(f"sorted {_listed(self.sorted)} into another order")
-        if self.rebuilt:
-            parts.append(f"rebuilt {_listed(self.rebuilt)} from the generators and triangles")
+            parts.append(f"sorted {_listed(self.sorted)}")
+        if self.missing:
+            parts.append(f"made {_listed(self.missing)}, which the file lacks, from the generators and triangles")
+        if self.replaced:
+            parts.append(f"replaced {_listed(self.replaced)} by what the generators give")
         return "; ".join(parts)
 
 
@@ -63,9 +69,7 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     if recompute_metrics:
         return rebuilt, changes
     if content.single_precision:
-        changes.said.append(
-            "coordinates are rounded to single precision, so that all metrics are those of the rounded ones"
-        )
+        changes.said.append("coordinates are in single precision, so that all metrics are taken from them")
         return rebuilt, changes
     return _with_metrics_of_file(rebuilt, exact, _metrics_of_file(arrays, topology, exact), changes), changes
 
@@ -82,7 +86,7 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: Changes)
         return normalize(points), radius
     if not all(name in arrays for name in ("lon_cell", "lat_cell")):
         raise MeshError(
-            "the file holds neither xCell, yCell and zCell nor lonCell and latCell; a mesh file must have its generators"
+            "xCell, yCell and zCell are missing, and lonCell and latCell too; a mesh file must have its generators"
         )
     longitude, latitude = arrays["lon_cell"], arrays["lat_cell"]
     require(np.isfinite(longitude) & np.isfinite(latitude), "cells", "lonCell or latCell is not a finite number")
@@ -122,18 +126,18 @@ def _topology(arrays: dict[str, NDArray], points: Array, changes: Changes) -> To
     """Connectivity in our order; `arrays` loses what means nothing without the numbers of the edges."""
     if "cells_on_vertex" not in arrays:
         raise MeshError(
-            "the variable cellsOnVertex is missing; a mesh file must have its triangles (mesh_from_points makes a mesh of "
-            "generators alone)"
+            "the variable cellsOnVertex is missing; a mesh file must have its triangles (mesh_from_points makes a mesh "
+            "of generators alone)"
         )
     boundary = arrays.pop("boundary_vertex", None)
     if boundary is not None and np.any(boundary != 0):
-        changes.rebuilt.append("boundaryVertex (a closed sphere has none)")
+        changes.replaced.append("boundaryVertex (a closed sphere has none)")
     if "cells_on_edge" not in arrays:
         for name in ON_EDGES:
             arrays.pop(name, None)
     missing = [name for name in TOPOLOGY_NAMES if name != "boundary_vertex" and name not in arrays]
     if missing:
-        changes.rebuilt.extend(f"{BY_NAME[name].file_name} (missing)" for name in missing)
+        changes.missing.extend(BY_NAME[name].file_name for name in missing)
     inner = np.zeros(len(arrays["cells_on_vertex"]), dtype=np.int32)
     topology = topology_in_order({**arrays, "boundary_vertex": inner}, points)
     if topology is None:
@@ -180,22 +184,24 @@ def _with_metrics_of_file(
     rebuilt: VoronoiMesh, exact: Metrics, metrics: dict[str, NDArray], changes: Changes
 ) -> VoronoiMesh:
     """`rebuilt` with the metrics of the file, but for those that no step depends on where they are wrong."""
-    changes.rebuilt.extend(f"{BY_NAME[name].file_name} (missing)" for name in METRICS_NAMES if name not in metrics)
-    mesh = replace(rebuilt, **metrics)
+    changes.missing.extend(BY_NAME[name].file_name for name in METRICS_NAMES if name not in metrics)
+    mesh = replace(rebuilt, **metrics)  # type: ignore[arg-type]
     for difference in metric_differences(mesh, exact):
         if not SPARE.issuperset(difference.names):
             require_small(difference)
         elif np.any(difference.relative > OUTSIDE_TOLERANCE):
-            changes.rebuilt.append(f"{difference.label} (differed by up to {difference.in_words})")
+            changes.replaced.append(f"{difference.label} (differed by up to {difference.in_words})")
             mesh = replace(mesh, **{name: getattr(rebuilt, name) for name in difference.names})
     angle = angle_difference(mesh, exact)
     if np.any(angle.relative > OUTSIDE_TOLERANCE):
         if "angle_edge" in metrics:
-            changes.rebuilt.append(f"{angle.label} (differed by up to {angle.in_words})")
+            changes.replaced.append(f"{angle.label} (differed by up to {angle.in_words})")
         mesh = replace(mesh, angle_edge=angles_in_place(mesh, exact))
     check_values(mesh)
     return mesh
 
 
 def _listed(names: list[str]) -> str:
+    if len(names) > MOST_LISTED:
+        return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
     return ", ".join(names)

@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from mesh.arrays import Array
 from mesh.density import NAMED, Density
 from mesh.errors import MeshError
+from mesh.files import dataset
 from mesh.sphere import normalize, to_lonlat
 
 DENSITY_VARIABLE = "density"
@@ -80,7 +81,7 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
     if not Path(path).is_file():
         raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             if variable not in file.variables:
                 raise MeshError(f"{path}: there is no variable named {variable}; name the field {DENSITY_VARIABLE}")
             field = file[variable]

@@ -5,6 +5,7 @@ import os
 import warnings
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Literal
 
 import netCDF4
 import numpy as np
@@ -12,14 +13,18 @@ import numpy as np
 from mesh.assembly import assembled_mesh
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
 from mesh.errors import MeshError, MeshWarning
-from mesh.files import written_aside
+from mesh.files import dataset, written_aside
 from mesh.mesh_file import read_content
 from mesh.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.voronoi_mesh import VoronoiMesh
 
 PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}
 
-FORMATS = {"netcdf4": "NETCDF4", "cdf5": "NETCDF3_64BIT_DATA", "classic": "NETCDF3_64BIT_OFFSET"}
+FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
+    "netcdf4": "NETCDF4",
+    "cdf5": "NETCDF3_64BIT_DATA",
+    "classic": "NETCDF3_64BIT_OFFSET",
+}
 """Formats of mesh files: HDF5, and what programs read that are built with PnetCDF."""
 
 
@@ -41,7 +46,7 @@ def write_mesh(
     path = Path(path)
     require_format(file_format)
     try:
-        with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format=FORMATS[file_format]) as file:
+        with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             file.createDimension("Time", None)  # of no length; some readers of the format ask for it
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
@@ -103,7 +108,7 @@ def read_mesh(path: str | os.PathLike[str], recompute_metrics: bool = False) -> 
     if path.exists() and not path.is_file():
         raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             file.set_auto_mask(False)
             content = read_content(file)
         mesh, changes = assembled_mesh(content, recompute_metrics)

@@ -7,11 +7,11 @@ A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh and
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 
 from cases.base import Case
 from mesh.arrays import Array
+from mesh.files import dataset
 from mesh.generators import icosahedral_level
 from mesh.io import read_mesh, write_mesh
 from mesh.moments import mean_spacing
@@ -123,7 +123,7 @@ def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
 def _history(path: Path) -> str:
     """What a mesh file says of how it was made; nothing where it is not readable."""
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             return str(file.history)
     except (OSError, AttributeError):
         return ""

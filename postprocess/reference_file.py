@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.registry import find_case
 from mesh.arrays import Array
-from mesh.files import written_aside
+from mesh.files import dataset, written_aside
 from postprocess.harmonics import Coefficients, Harmonics, truncation_of
 from postprocess.reference import MEASURES, Reference
 from postprocess.stored_references import stored_path
@@ -47,7 +47,7 @@ def stored_reference(case: str) -> Reference | None:
 
 def write_reference(reference: Reference, path: Path) -> None:
     """Write `reference`; coefficients are integers times a scale, which readers of NetCDF apply by themselves."""
-    with written_aside(path) as aside, netCDF4.Dataset(aside, "w", format="NETCDF4") as file:
+    with written_aside(path) as aside, dataset(aside, "w", format="NETCDF4") as file:
         n_days, _, n_coefficients = reference.coefficients.shape
         sizes = {
             "day": n_days,
@@ -121,21 +121,49 @@ def _write_variable(
 
 
 def read_reference(path: Path) -> Reference:
-    """Read a reference; raise `SetupError` where the file is none."""
+    """Read a reference; raise `SetupError` where the file is none, or is damaged."""
     try:
-        with netCDF4.Dataset(path) as file:
+        with dataset(path) as file:
             file.set_auto_mask(False)
-            parts = np.stack([file[name][:] for name in FIELDS], axis=1)
-            return Reference(
-                case=find_case(file.case, json.loads(file.parameters)),
-                days=tuple(file["day"][:].tolist()),
-                coefficients=parts[:, :, 0] + 1j * parts[:, :, 1],
-                truncations=tuple(int(each) for each in file["truncation"][:]),
-                differences=file["difference"][:],
-                settings=file.source.split("; ")[-1],
-                history=file.history,
-            )
-    except (OSError, KeyError, IndexError, AttributeError, json.JSONDecodeError) as error:
+            reference = _reference_of(file)
+        _require_sound(reference)
+        return reference
+    except (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError) as error:
         raise SetupError(
             f"{path} is no readable reference solution ({error}); make one with 'trisk reference'"
         ) from error
+    except MemoryError as error:
+        raise SetupError(f"{path} claims to be larger than the memory; make it anew with 'trisk reference'") from error
+
+
+def _reference_of(file: netCDF4.Dataset) -> Reference:
+    parts = np.stack([np.asarray(file[name][:], dtype=np.float64) for name in FIELDS], axis=1)
+    return Reference(
+        case=find_case(file.case, json.loads(file.parameters)),
+        days=tuple(np.asarray(file["day"][:], dtype=np.float64).tolist()),
+        coefficients=parts[:, :, 0] + 1j * parts[:, :, 1],
+        truncations=tuple(int(each) for each in file["truncation"][:]),
+        differences=np.asarray(file["difference"][:], dtype=np.float64),
+        settings=file.source.split("; ")[-1],
+        history=file.history,
+    )
+
+
+def _require_sound(reference: Reference) -> None:
+    """Raise `ValueError` where arrays do not fit each other or hold what no reference does."""
+    n_days, n_coarser = len(reference.days), len(reference.truncations) - 1
+    n_coefficients = reference.coefficients.shape[-1]
+    resolved = truncation_of(reference.coefficients)
+    if n_days == 0 or np.any(np.diff(reference.days, prepend=0.0) <= 0.0) or not np.isfinite(reference.days).all():
+        raise ValueError(f"its days are {reference.days}, not ascending times after the start")
+    if reference.coefficients.shape[0] != n_days or n_coefficients != (resolved + 1) * (resolved + 2) // 2:
+        raise ValueError(f"it has {n_coefficients} coefficients, which are no triangle of harmonics")
+    if n_coarser < 1 or reference.differences.shape != (n_coarser, n_days, len(MEASURES)):
+        raise ValueError(f"its differences have the shape {reference.differences.shape}")
+    if min(reference.truncations) < 1 or list(reference.truncations) != sorted(set(reference.truncations)):
+        raise ValueError(f"its truncations are {reference.truncations}, not ascending")
+    for name, values in (("coefficients", reference.coefficients), ("differences", reference.differences)):
+        if not np.isfinite(values).all():
+            raise ValueError(f"its {name} are not all finite")
+    if np.any(reference.differences < 0.0):
+        raise ValueError(f"its least difference is {reference.differences.min():.3g}, but norms are not negative")

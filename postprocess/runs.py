@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import get_args
 
-import netCDF4
 import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
+from mesh.files import dataset
 from mesh.io import read_mesh
 from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
@@ -67,7 +67,7 @@ class Run:
         return self._read(len(self.days) - 1)
 
     def _read(self, row: int) -> Snapshot:
-        with netCDF4.Dataset(self.directory / HISTORY_FILE) as file:
+        with dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
             snapshot = Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
         wrong = [name for name, values in snapshot.fields.items() if not np.isfinite(values).all()]
@@ -84,7 +84,7 @@ def read_run(directory: Path) -> Run:
     try:
         record = load_record(directory)
         series = read_series(directory / DIAGNOSTICS_FILE)
-        with netCDF4.Dataset(directory / HISTORY_FILE) as file:
+        with dataset(directory / HISTORY_FILE) as file:
             days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
         mesh = read_mesh(directory / MESH_FILE)
         configuration = record["configuration"]

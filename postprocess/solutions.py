@@ -11,6 +11,7 @@ from typing import Protocol
 from cases.base import Case
 from cases.registry import find_case
 from mesh.arrays import Array
+from mesh.files import name_in_text
 from postprocess.remap import Remap, remap_cells, remap_vertices
 from postprocess.runs import Run, days_in_words, days_of_both, read_run
 from postprocess.stored_references import stored_path
@@ -82,7 +83,7 @@ class RunSolution:
 
     def __init__(self, run: Run) -> None:
         self.run = run
-        self.name = f"{_short(run.directory)}, {run.mesh.n_cells} cells"
+        self.name = f"{name_in_text(_short(run.directory))}, {run.mesh.n_cells} cells"
         self.days = tuple(run.days.tolist())
         self._maps: dict[tuple[str, int, int], Remap] = {}
 

@@ -14,6 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
+from mesh.files import name_in_text
 from mesh.moments import mean_spacing
 from postprocess.folders import prepared_folder, require_possible_folder
 from postprocess.harmonics import Harmonics
@@ -42,7 +43,7 @@ class Spectra:
     @property
     def name(self) -> str:
         """Run and day, for legends."""
-        return f"{self.run.directory.name}, {self.run.mesh.n_cells} cells, day {self.day:g}"
+        return f"{name_in_text(self.run.directory.name)}, {self.run.mesh.n_cells} cells, day {self.day:g}"
 
 
 def resolved_wavenumber(n_cells: int) -> int:
@@ -88,7 +89,7 @@ def write_spectra(spectra: Sequence[Spectra], path: Path) -> None:
         writer = csv.writer(file)
         writer.writerow(["run", "cells", "day", "wavenumber", "kinetic_energy_m2_s-2", "potential_enstrophy_m-1_s-2"])
         for each in spectra:
-            start = (each.run.directory.name, each.run.mesh.n_cells, each.day)
+            start = (name_in_text(each.run.directory.name), each.run.mesh.n_cells, each.day)
             for wavenumber, pair in enumerate(zip(each.kinetic_energy, each.potential_enstrophy, strict=True)):
                 writer.writerow([*start, wavenumber, *pair])
 

@@ -193,7 +193,9 @@ def _write_page(
     path = folder / REPORT_FILE
     start = f'<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>'
     with written_aside(path) as aside:
-        aside.write_text(f"{start}\n<style>{STYLE}</style>\n" + "\n".join(parts) + "\n</html>\n", encoding="utf-8")
+        aside.write_text(
+            f"{start}\n<style>{STYLE}</style>\n" + "\n".join(parts) + "\n</html>\n", "utf-8", "backslashreplace"
+        )
     return path
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.conventions import BY_NAME
-from mesh.files import written_aside
+from mesh.files import dataset, netcdf_lock, opened_dataset, written_aside
 from mesh.io import mesh_attributes, write_mesh_variables
 from mesh.operators import velocity_at_cells
 from mesh.voronoi_mesh import VoronoiMesh
@@ -128,14 +128,15 @@ def _attributes(description: Mapping[str, object]) -> dict[str, object]:
 @contextmanager
 def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
     """A file to define and fill. One that cannot be written is left open: the library does not survive closing it."""
-    try:
-        file = netCDF4.Dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
-        file.set_fill_off()
-        yield file
-        file.sync()
-    except (OSError, RuntimeError) as error:
-        raise RunError(f"{path} cannot be written ({error}); is the disk full?") from error
-    file.close()
+    with netcdf_lock:
+        try:
+            file = opened_dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
+            file.set_fill_off()
+            yield file
+            file.sync()
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{path} cannot be written ({error}); is the disk full?") from error
+        file.close()
 
 
 class _TimeFile:
@@ -148,6 +149,10 @@ class _TimeFile:
     def __init__(self, path: Path, names: Iterable[str], rows: int | None = None, size: int = 0) -> None:
         self._path = path
         self._failed = False
+        with netcdf_lock:
+            self._open(path, names, rows, size)
+
+    def _open(self, path: Path, names: Iterable[str], rows: int | None, size: int) -> None:
         try:
             self._file = _opened(path)
             present = len(self._file.dimensions["Time"])
@@ -174,11 +179,12 @@ class _TimeFile:
         """Write new rows (n, ...) of every variable."""
         rows = slice(self.rows, self.rows + len(values["time"]))
         try:
-            for name, value in values.items():
-                self._file[name][rows] = value
-            if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
-                self._file[TIME_COORDINATE][rows] = values["time"]
-            self._file.sync()
+            with netcdf_lock:
+                for name, value in values.items():
+                    self._file[name][rows] = value
+                if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
+                    self._file[TIME_COORDINATE][rows] = values["time"]
+                self._file.sync()
         except (OSError, RuntimeError) as error:
             self._failed = True
             raise RunError(f"{self._path} cannot be written ({error}); is the disk full?") from error
@@ -187,12 +193,13 @@ class _TimeFile:
     def close(self) -> None:
         """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
         if not self._failed:
-            self._file.close()
+            with netcdf_lock:
+                self._file.close()
 
 
 def _opened(path: Path) -> netCDF4.Dataset:
     """The file, to be read and written."""
-    file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+    file = opened_dataset(path, "r+")
     # Values are written as they are; looking for masks and scales takes as long as writing them.
     file.set_auto_maskandscale(False)
     return file
@@ -236,7 +243,8 @@ class DiagnosticsFile(_TimeFile):
         self._written = clock.monotonic()
         self._last: dict[str, float] | None = None
         if self.rows > 0:
-            self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *SERIES)}
+            with netcdf_lock:
+                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *SERIES)}
 
     def append(
         self,
@@ -347,6 +355,6 @@ def _define_time(file: netCDF4.Dataset) -> None:
 
 def read_series(path: Path) -> dict[str, Array]:
     """All series of a diagnostics file by name, `time` among them; runs of earlier versions have no rates."""
-    with netCDF4.Dataset(path) as file:
+    with dataset(path) as file:
         optional = set(rate_series()) - set(file.variables)
         return {name: np.asarray(file[name][:]) for name in ("time", *SERIES) if name not in optional}

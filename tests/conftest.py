@@ -1,5 +1,12 @@
 """Meshes that the tests share, made once a session."""
 
+import os
+import signal
+from collections.abc import Iterator
+
+# Tests of threads want two of them on any machine; numba reads this once, as it is imported.
+os.environ["NUMBA_NUM_THREADS"] = str(max(2, os.cpu_count() or 1))
+
 import numpy as np
 import pytest
 
@@ -16,6 +23,16 @@ def stretched_mesh(cells: int) -> VoronoiMesh:
     points = scvt_mesh(cells, start="fibonacci", tolerance=1e-6).cell_points
     points = points + np.array([0.3, -0.35, 0.2])
     return mesh_from_points(points)
+
+
+@pytest.fixture(autouse=True)
+def usual_signals() -> Iterator[None]:
+    """Signals as in a program in the foreground, for tests and for what they start, however the tests were started."""
+    usual = {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}
+    before = {number: signal.signal(number, handler) for number, handler in usual.items()}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 @pytest.fixture(scope="session")

@@ -1,10 +1,14 @@
 """The `trisk` command; packages are imported when a command needs them, so that help is quick."""
 
 import errno
+import io
 import json
+import os
 import shlex
+import signal
 import sys
 import warnings
+from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -29,6 +33,9 @@ ERRORS_OF_PATHS = (
     *(errno.EINVAL, errno.ENAMETOOLONG, errno.ELOOP, errno.EROFS),
 )
 """What the system says of paths that are no use."""
+
+ERRORS_OF_OUTPUT = (errno.ENOSPC, errno.EPIPE, errno.EIO, errno.EFBIG, errno.EDQUOT, errno.EBADF)
+"""What the system says, without the name of a file, where the output takes no more."""
 
 RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
 """Exit codes; the last is that of shells, to which the number of the signal is added."""
@@ -391,7 +398,9 @@ def bench(
 
 
 def _command_line() -> str:
-    return shlex.join(["trisk", *sys.argv[1:]])
+    from mesh.files import name_in_text
+
+    return name_in_text(shlex.join(["trisk", *sys.argv[1:]]))
 
 
 def _warning_line(message: Warning | str, *_: object) -> str:
@@ -403,18 +412,51 @@ def main() -> None:
     warnings.formatwarning = _warning_line  # type: ignore[assignment]
     # Overflows and the like come of wrong input, which is told of by an error.
     warnings.filterwarnings("ignore", category=RuntimeWarning)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may hold any bytes
     try:
-        app()
+        _call_app()
+    except BrokenPipeError:
+        sys.exit(STOPPED + signal.SIGPIPE)
     except Exception as error:
         code = _exit_code(error)
         if code is None:
             raise
-        typer.echo(f"error: {_in_one_line(error)}", err=True)
+        with suppress(OSError):  # nobody can be told where the error output is full
+            typer.echo(f"error: {_in_one_line(error)}", err=True)
         sys.exit(code)
+
+
+def _call_app() -> None:
+    """Run the command and write out what it printed; raise `OSError` where the output takes no more."""
+    try:
+        try:
+            app()
+        finally:
+            if sys.stdout is not None:
+                sys.stdout.flush()
+    except SystemExit as stop:
+        # Typer ends with a code of its own where the reader of a pipe has gone.
+        if isinstance(stop.__context__, BrokenPipeError):
+            _drop_output()
+            raise stop.__context__ from None
+        raise
+    except OSError as error:
+        if error.filename is None and error.errno in ERRORS_OF_OUTPUT:
+            _drop_output()
+        raise
+
+
+def _drop_output() -> None:
+    """Let the interpreter not try once more, at its end, to write what cannot be written."""
+    with suppress(OSError, ValueError, AttributeError), open(os.devnull, "wb") as nothing:
+        os.dup2(nothing.fileno(), sys.stdout.fileno())
 
 
 def _exit_code(error: Exception) -> int | None:
     """Exit code for a foreseen error; None for a fault of this program."""
+    if isinstance(error, OSError):
+        return BAD_INPUT if error.errno in ERRORS_OF_PATHS else RUN_FAILED
     from mesh import MeshError
     from swe.errors import RunError, RunStopped, SetupError
 
@@ -422,9 +464,7 @@ def _exit_code(error: Exception) -> int | None:
         return STOPPED + error.signal
     if isinstance(error, MeshError | SetupError):
         return BAD_INPUT
-    if isinstance(error, OSError) and error.errno in ERRORS_OF_PATHS:
-        return BAD_INPUT
-    if isinstance(error, RunError | OSError | MemoryError):
+    if isinstance(error, RunError | MemoryError):
         return RUN_FAILED
     return None
 
@@ -432,6 +472,9 @@ def _exit_code(error: Exception) -> int | None:
 def _in_one_line(error: Exception) -> str:
     if isinstance(error, MemoryError):
         return f"the machine has not enough memory for this ({error}); ask for fewer cells"
+    if isinstance(error, OSError) and error.filename is None and error.errno in ERRORS_OF_OUTPUT:
+        return f"the output cannot be written ({error.strerror}); send it elsewhere, or make room"
     if isinstance(error, OSError) and error.strerror:
-        return f"{error.filename}: {error.strerror}".replace("\n", " ")
+        what = "" if error.filename is None else f"{error.filename}: "
+        return f"{what}{error.strerror}".replace("\n", " ")
     return str(error).replace("\n", " ")

@@ -3,6 +3,7 @@
 import tempfile
 from pathlib import Path
 
+from mesh.files import place_of
 from swe.errors import SetupError
 
 
@@ -10,10 +11,11 @@ def require_possible_file(path: Path) -> None:
     """Raise `SetupError` where no file can be written to `path`."""
     if path.exists() and not path.is_file():
         raise SetupError(f"{path} cannot be written, as it is there and no file; choose another place")
-    if not path.parent.is_dir():
-        raise SetupError(f"{path} cannot be written, as there is no such folder; choose another place")
     try:
-        with tempfile.NamedTemporaryFile(dir=path.parent):
+        place = place_of(path)
+        if not place.parent.is_dir():
+            raise SetupError(f"{path} cannot be written, as there is no such folder; choose another place")
+        with tempfile.NamedTemporaryFile(dir=place.parent):
             pass
     except OSError as error:
         raise SetupError(f"{path} cannot be written ({error.strerror}); choose another place") from error

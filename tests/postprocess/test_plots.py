@@ -1,3 +1,5 @@
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -47,3 +49,13 @@ def test_last_snapshot(run_directory: Path) -> None:
 def test_folder_without_a_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(SetupError, match="holds no readable run"):
         read_run(tmp_path)
+
+
+def test_the_backend_and_the_settings_of_the_user_stay() -> None:
+    program = (
+        "import matplotlib; matplotlib.use('svg'); before = dict(matplotlib.rcParams)\n"
+        "import postprocess.plots, postprocess.study_report, postprocess.compare_maps, postprocess.spectra\n"
+        "print(matplotlib.get_backend(), dict(matplotlib.rcParams) == before)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.split() == ["svg", "True"]

@@ -1,3 +1,5 @@
+import shutil
+from contextlib import suppress
 from pathlib import Path
 
 import netCDF4
@@ -130,3 +132,38 @@ def test_points_may_have_any_shape(reference: Reference) -> None:
     flat = reference.thickness(LONGITUDE, LATITUDE, 0.5)
     assert np.array_equal(reference.thickness(*square, 0.5), flat.reshape(2, 2))
     assert reference.velocity(*square, 0.5)[1].shape == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("name", "index", "value", "words"),
+    [
+        ("day", 0, -1.0, "its days are"),
+        ("day", 0, np.nan, "its days are"),
+        ("truncation", 0, 1e3, "its truncations are"),
+        ("truncation", 0, np.nan, "cannot convert float NaN to integer"),
+        ("difference", 0, np.inf, "its differences are not all finite"),
+        ("difference", 0, -1.0, "its least difference is -1"),
+    ],
+)
+def test_a_damaged_reference_is_refused(tmp_path: Path, name: str, index: int, value: float, words: str) -> None:
+    path = tmp_path / "reference.nc"
+    shutil.copy(FOLDER / "williamson5.nc", path)
+    with netCDF4.Dataset(path, "a") as file:
+        file[name][index] = value
+    with pytest.raises(SetupError, match=f"is no readable reference solution .*{words}.*; make one with"):
+        read_reference(path)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_cut_or_mutated_reference_is_read_or_refused(tmp_path: Path, seed: int) -> None:
+    random = np.random.default_rng(seed)
+    whole = bytearray((FOLDER / "williamson5.nc").read_bytes())
+    path = tmp_path / "reference.nc"
+    path.write_bytes(whole[: random.integers(len(whole))])
+    with pytest.raises(SetupError, match="is no readable reference solution"):
+        read_reference(path)
+    for place in random.integers(8000, size=20):
+        whole[place] = random.integers(256)
+    path.write_bytes(whole)
+    with suppress(SetupError):
+        assert np.isfinite(read_reference(path).coefficients).all()

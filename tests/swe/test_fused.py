@@ -110,8 +110,6 @@ def _with_cells_shuffled(mesh: VoronoiMesh) -> VoronoiMesh:
 
 
 def test_results_do_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
-    if numba.config.NUMBA_NUM_THREADS < 2:
-        pytest.skip("needs two processors")
     monkeypatch.setattr(build_tiles, "__defaults__", (100,))
     model, start = random_model(larger_mesh)
     results = []

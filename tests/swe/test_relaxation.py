@@ -131,8 +131,6 @@ def test_flows_that_do_not_change_are_left_alone(icosahedral_mesh: VoronoiMesh) 
 
 
 def test_results_do_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
-    if numba.config.NUMBA_NUM_THREADS < 2:
-        pytest.skip("needs two processors")
     monkeypatch.setattr("swe.threads.CELLS_PER_THREAD", 1000)
     states = []
     available = numba.get_num_threads()

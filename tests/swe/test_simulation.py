@@ -56,8 +56,6 @@ def test_conservation_over_two_days(any_mesh: VoronoiMesh) -> None:
 
 
 def test_result_does_not_depend_on_the_number_of_threads(larger_mesh: VoronoiMesh) -> None:
-    if numba.config.NUMBA_NUM_THREADS < 2:
-        pytest.skip("needs two processors")
     states = []
     for threads in (1, 2):
         simulation = Simulation(larger_mesh, Williamson5())

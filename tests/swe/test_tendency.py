@@ -27,8 +27,6 @@ def random_setting(mesh: VoronoiMesh) -> tuple[ShallowWaterModel, State]:
 
 @pytest.mark.parametrize("threads", [1, 2])
 def test_kernels_equal_the_equation(any_mesh: VoronoiMesh, threads: int) -> None:
-    if threads > numba.config.NUMBA_NUM_THREADS:
-        pytest.skip("needs two processors")
     model, state = random_setting(any_mesh)
     expected = tendency(state, build_operators(model.mesh), model.topography, model.coriolis, GRAVITY)
     found = state.empty_like()

@@ -1,0 +1,49 @@
+"""Outputs that are full or closed, and names of files that are no text, from the command line."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from mesh import VoronoiMesh, write_mesh
+
+COMMAND = [sys.executable, "-m", "trisk"]
+
+
+@pytest.fixture
+def mesh_file(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> Path:
+    write_mesh(icosahedral_mesh, tmp_path / "mesh.nc")
+    return tmp_path / "mesh.nc"
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+@pytest.mark.parametrize("command", [["quality"], ["quality", "--json"], ["--help"]])
+def test_a_full_output(mesh_file: Path, command: list[str]) -> None:
+    arguments = command if command == ["--help"] else [*command, str(mesh_file)]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*COMMAND, *arguments], stdout=full, stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 1
+        told = "error: the output cannot be written (No space left on device); send it elsewhere, or make room\n"
+        assert done.stderr == told
+        assert subprocess.run([*COMMAND, "quality", "none.nc"], stderr=full).returncode == 2
+
+
+def test_a_closed_pipe_ends_quietly(mesh_file: Path) -> None:
+    reader, writer = os.pipe()
+    os.close(reader)
+    done = subprocess.run([*COMMAND, "quality", str(mesh_file)], stdout=writer, stderr=subprocess.PIPE)
+    os.close(writer)
+    assert (done.returncode, done.stderr) == (141, b"")
+
+
+def test_names_that_are_no_text(mesh_file: Path, tmp_path: Path) -> None:
+    name = os.fsencode(tmp_path) + b"/run_\xff"
+    run = [*COMMAND, "run", "williamson2", "--mesh", mesh_file, "--days", "0.1", "-q", "-o", name]
+    for command in (run, [*COMMAND, "compare", name], [*COMMAND, "plot", name]):
+        done = subprocess.run(command, capture_output=True)
+        assert (done.returncode, done.stderr) == (0, b"")
+    missing = subprocess.run([*COMMAND, "quality", name + b".nc"], capture_output=True, text=True)
+    assert missing.returncode == 2
+    assert missing.stderr.endswith("run_\\udcff.nc: no such file; give an MPAS mesh file\n")
