@@ -9,7 +9,7 @@ it rise where the slope says that it falls.
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,6 +87,10 @@ class Limits:
             )
         if not self.seconds >= 0.0:
             raise MeshError(f"the time allowed is {self.seconds:g} s; it must not be negative")
+
+    def since(self, begin: float) -> "Limits":
+        """These limits for the rest of work that began when `time.perf_counter` gave `begin`."""
+        return replace(self, seconds=max(0.0, self.seconds - (time.perf_counter() - begin)))
 
     def reason_to_stop(self, history: History) -> str | None:
         """Which limit the last iteration reached: `tolerance`, `iterations` or `seconds`; None for none."""
@@ -172,9 +176,10 @@ class Optimizer:
         self._gradient_square = 0.0
         self._fixed = fixed
         self._evaluate: Callable[..., None] = evaluate
+        self._weighted = density is not None or fixed is not None
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
         self._least_energy, self._patience = np.inf, PATIENCE
-        if density is not None or fixed is not None:
+        if self._weighted:
             self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
@@ -208,7 +213,7 @@ class Optimizer:
         self._memory.clear()
         if self._search_along_new_direction():
             return True
-        if self._noise == RELATIVE_ROUND_OFF:
+        if not self._weighted:
             return False
         slot = self._memory.spare_slot()
         self._memory.steps[slot] = -self._current.gradient.ravel()

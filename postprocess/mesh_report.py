@@ -105,7 +105,7 @@ def _shaken(start: Start, seed: int, tolerance: float) -> Start:
     points = start.mesh.cell_points
     step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
     request = Request(len(points), seed=seed)
-    result = optimize(normalize(points + step), None, request, Limits(tolerance))
+    result = optimize(normalize(points + step), limits=Limits(tolerance))
     return measured("icosahedral, shaken", request, "uniform", result)
 
 
@@ -120,7 +120,7 @@ def optimizer_histories(tell: Tell) -> dict[str, History]:
         if method == "multilevel":
             histories[method] = generate_scvt(request, limits).history
         else:
-            histories[method] = optimize(*starting_mesh(request), request, limits).history
+            histories[method] = optimize(*starting_mesh(request), method, limits=limits).history
         tell(f"{method}: residual {histories[method].residual[-1]:.1e} after {histories[method].iterations} iterations")
     return histories
 

@@ -2,6 +2,7 @@
 
 import errno
 import json
+import math
 import shlex
 import sys
 import warnings
@@ -79,11 +80,15 @@ def mesh(
     tolerance: Annotated[
         float | None,
         typer.Option(
-            "--tolerance", help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density."
+            "--tolerance",
+            help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density, and more for methods "
+            "that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
         ),
     ] = None,
     max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = 10_000,
-    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long.")] = float("inf"),
+    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long, all in all.")] = float(
+        "inf"
+    ),
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -95,7 +100,7 @@ def mesh(
     from trisk.report import print_quality
 
     if tolerance is None:
-        tolerance = default_tolerance(density)
+        tolerance = default_tolerance(density, method)
     limits = Limits(tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
     options = MeshOptions(
@@ -138,10 +143,14 @@ def quality(
         print_table1(max_level, output)
         return
     from mesh import mesh_quality, read_mesh
+    from mesh.quality import residual_note
 
     read = read_mesh(file, recompute_metrics)
     if as_json:
-        typer.echo(json.dumps(asdict(mesh_quality(read))))
+        measured = asdict(mesh_quality(read))
+        if not math.isfinite(measured["residual"]):
+            measured["residual"] = None
+        typer.echo(json.dumps({**measured, "residual_note": residual_note(read)}))
     else:
         print_quality(read, str(file))
 

@@ -72,7 +72,7 @@ def residual_of(result: ScvtResult) -> float:
 @pytest.mark.parametrize("start", ["fibonacci", "random"])
 def test_energy_never_rises_and_the_residual_is_reached(method: str, start: str) -> None:
     points = fibonacci_points(200) if start == "fibonacci" else random_points(200, 9)
-    result = optimize(points, request=Request(200, method=method), limits=Limits(1e-6))
+    result = optimize(points, method=method, limits=Limits(1e-6))
     energy = np.array(result.history.energy)
     assert np.all(np.diff(energy) <= 1e-13 * energy[0])
     assert energy[-1] < energy[0]
@@ -94,7 +94,7 @@ def test_all_methods_find_the_same_mesh_and_lbfgs_sooner() -> None:
 
 def test_lloyd_steps_to_the_centroids() -> None:
     points = fibonacci_points(100)
-    result = optimize(points, request=Request(100, method="lloyd"), limits=Limits(iterations=1))
+    result = optimize(points, method="lloyd", limits=Limits(iterations=1))
     _, moment = mass_and_moment(points, delaunay(points))
     np.testing.assert_allclose(result.points, normalize(moment), atol=1e-13)
 
