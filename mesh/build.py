@@ -23,6 +23,9 @@ from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
 UNIFORM_TOLERANCE, VARIABLE_TOLERANCE = 1e-8, 1e-6
 """Centroid residuals, in mean spacings, at which an SCVT counts as converged."""
 
+ACCEPTABLE = 1e-4
+"""The same where quadrature of the density ends the descent: kinks between values of a coarse field leave less."""
+
 SAMPLING_TOLERANCES = {"probabilistic": (0.02, 0.2), "macqueen": (0.1, 0.5)}
 """The same, under uniform and any other density, for the methods whose residual falls like the root of the samples."""
 
@@ -34,6 +37,22 @@ def default_tolerance(density: str | Density, method: str = "lbfgs") -> float:
     """
     uniform_tolerance, other = SAMPLING_TOLERANCES.get(method, (UNIFORM_TOLERANCE, VARIABLE_TOLERANCE))
     return uniform_tolerance if density in ("uniform", uniform) else other
+
+
+def default_limits(
+    density: str | Density,
+    method: str,
+    tolerance: float | None = None,
+    iterations: int = 10_000,
+    seconds: float = float("inf"),
+) -> Limits:
+    """Limits of an optimisation; without a tolerance, the default one.
+
+    Kinks of a density may not allow that, and then a residual of `ACCEPTABLE` will do.
+    """
+    if tolerance is not None:
+        return Limits(tolerance, iterations, seconds)
+    return Limits(default_tolerance(density, method), iterations, seconds, ACCEPTABLE)
 
 
 def mesh_from_points(
@@ -90,5 +109,5 @@ def scvt_mesh(
     """
     function = find_density(os.fspath(density)) if isinstance(density, str | os.PathLike) else density
     request = Request(cells, start, method, function, seed)
-    limits = Limits(default_tolerance(function, method) if tolerance is None else tolerance, max_iterations)
+    limits = default_limits(function, method, tolerance, max_iterations)
     return mesh_of(generate_scvt(request, limits, callback), function)

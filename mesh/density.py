@@ -105,16 +105,18 @@ def density_at(density: Density, points: Array) -> Array:
     """
     given = density(points)
     try:
-        values = np.asarray(given, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise MeshError(f"the density gives {type(given).__name__} instead of numbers; return one per point") from error
+        values = np.asarray(given)
+    except ValueError:  # a list of lists of different lengths
+        values = np.empty(0, object)
+    if values.dtype.kind not in "biuf":
+        raise MeshError(f"the density gives {type(given).__name__} instead of real numbers; return one per point")
     if values.shape == ():
         values = np.full(len(points), values)
     if values.shape not in ((len(points),), (len(points), 1)):
         raise MeshError(
             f"the density gives values of shape {values.shape} at {len(points)} points; return one per point"
         )
-    values = np.ascontiguousarray(values.reshape(len(points)))
+    values = np.ascontiguousarray(values.reshape(len(points)), dtype=np.float64)
     _check(values, points)
     return values
 

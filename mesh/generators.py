@@ -117,10 +117,10 @@ def random_points(count: int, density: Density, generator: np.random.Generator) 
 def within_range(density: Density) -> Density:
     """The density itself or, where its values are so large or small that products of them are lost, a multiple of it.
 
-    Only ratios of a density matter. The factor is a power of two, which changes no digit. Raises `MeshError` where the
-    density is negative, not finite, or zero everywhere.
+    Only ratios of a density matter. The factor is a power of four, which changes no digit, nor of roots. Raises
+    `MeshError` where the density is negative, not finite, or zero everywhere.
     """
-    exponent = math.frexp(_largest_value(density))[1]
+    exponent = 2 * (math.frexp(_largest_value(density))[1] // 2)
     if abs(exponent) <= SAFE_EXPONENT:
         return density
     return lambda points: np.ldexp(density_at(density, points), -exponent)

@@ -19,6 +19,9 @@ TURN = 2.0 * np.pi
 WIDEST_GAP = 1.5
 """A grid covers the globe where no gap between its rows or columns is wider than the others by more than this."""
 
+SAME = 1e-9
+"""Radians; a row closer than this to a pole is at the pole."""
+
 
 def density_on_grid(
     latitude: Array, longitude: Array, values: Array, shape: Callable[[Array, Smooth], Array], name: str
@@ -26,7 +29,6 @@ def density_on_grid(
     """Bilinear interpolation of values (n, m) at latitudes (n,) and longitudes (m,), radians in any order.
 
     It is continuous at the poles and round the circle. `shape` makes the density of the values and a pass of smoothing.
-
     Beyond the edges of a grid of a part of the globe, the nearest value holds for two thirds of the way to the pole,
     and for a third of the way round on either side.
     """
@@ -37,8 +39,8 @@ def density_on_grid(
         raise MeshError(f"{name} has one latitude; a grid needs two at least")
     gaps = np.diff(longitude, append=longitude[0] + TURN)
     whole_circle = len(gaps) == 1 or gaps.max() <= WIDEST_GAP * np.delete(gaps, gaps.argmax()).max()
-    beyond = QUARTER - np.abs(latitude[[0, -1]])
-    whole_height = beyond.max() <= WIDEST_GAP * np.diff(latitude).max()
+    beyond = max(QUARTER + latitude[0], QUARTER - latitude[-1])
+    whole_height = beyond <= WIDEST_GAP * np.diff(latitude).max()
     if not (whole_circle and whole_height):
         tell_of_part(name)
     # Where there is a gap, the columns begin after it.
@@ -47,10 +49,10 @@ def density_on_grid(
     longitude, columns = (np.roll(longitude, -first) - west) % TURN, np.roll(columns, -first)
     edge: Literal["wrap", "edge"] = "wrap" if whole_circle else "edge"
     values = shape(values[np.ix_(rows, columns)], lambda values: _smooth_grid(values, edge))
-    longitude, values = _closed_circle(longitude, values, whole_circle)
     south, north = (_cap(latitude[end], sign, values[end], whole_height) for end, sign in ((0, -1.0), (-1, 1.0)))
     latitude = np.concatenate([south[0], latitude[1:-1], north[0][::-1]])
     values = np.concatenate([south[1], values[1:-1], north[1][::-1]])
+    longitude, values = _closed_circle(longitude, values, whole_circle)
     interpolate = RegularGridInterpolator((latitude, longitude), values)
 
     def density(points: Array) -> Array:
@@ -80,7 +82,7 @@ def _cap(latitude: float, sign: float, row: Array, whole: bool) -> tuple[Array, 
     """Latitudes and rows of values from the pole of this sign to the last row (m,), its own mean being at the pole."""
     pole = sign * QUARTER
     mean = np.full_like(row, row.mean() if np.ptp(row) else row[0])
-    if latitude == pole:
+    if abs(latitude - pole) < SAME:
         return np.array([pole]), mean[None]
     if whole:
         return np.array([pole, latitude]), np.stack([mean, row])

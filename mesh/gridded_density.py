@@ -127,7 +127,8 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
         with netCDF4.Dataset(path) as file:
             if variable not in file.variables:
                 raise MeshError(
-                    f"{path}: there is no variable named {variable}; name the field, one of {', '.join(file.variables)}"
+                    f"{path}: there is no variable named {variable}; name one of those that it has, which are "
+                    f"{', '.join(file.variables)}"
                 )
             field = _read_field(file, file[variable], path)
     except (OSError, RuntimeError, ValueError, IndexError) as error:

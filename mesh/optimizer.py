@@ -73,11 +73,16 @@ LARGEST_TOLERANCE = 10.0
 
 @dataclass(frozen=True)
 class Limits:
-    """When to stop: at a residual in mean spacings, or after so many iterations or seconds."""
+    """When to stop: at a residual in mean spacings, or after so many iterations or seconds.
+
+    A descent that the quadrature of the density ended above the tolerance still counts as converged where the residual
+    is `acceptable`.
+    """
 
     tolerance: float = 1e-8
     iterations: int = 10_000
     seconds: float = float("inf")
+    acceptable: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance <= LARGEST_TOLERANCE:
@@ -105,7 +110,8 @@ class Limits:
 class ScvtResult:
     """Generators (n_cells, 3), their Delaunay triangles, the convergence history, and why the optimiser stopped.
 
-    `reason` is `tolerance`, `iterations`, `seconds` or `round-off`; `fixed` (n_cells,) marks generators that were held.
+    `reason` is `tolerance`, `iterations`, `seconds`, or what hides any further step: `round-off` or, under a density,
+    `quadrature`. `fixed` (n_cells,) marks generators that were held.
     """
 
     points: Array
@@ -185,7 +191,7 @@ class Optimizer:
             self._patience = PATIENCE_UNDER_DENSITY
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
-        """Iterate until one of the `limits` is reached or round-off allows no further step."""
+        """Iterate until one of the `limits` is reached or round-off or quadrature allow no further step."""
         history, begin = History(), time.perf_counter()
         self._evaluate_trial(self._memory.steps[0])
         self._accept_start()
@@ -198,7 +204,7 @@ class Optimizer:
                 callback(Iterate(history.iterations, state.residual, state.energy, state.points))
             reason = limits.reason_to_stop(history)
             if reason is None and (_stagnates(history, self._patience) or not self._step()):
-                reason = "round-off"
+                reason = "quadrature" if self._weighted else "round-off"
             if reason is not None:
                 self._triangulation.update(state.points)
                 return ScvtResult(state.points, self._triangulation.triangles, history, reason, self._fixed)

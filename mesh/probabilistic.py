@@ -84,11 +84,15 @@ def probabilistic_lloyd(
         reason = limits.reason_to_stop(history)
         if reason is not None:
             return ScvtResult(mover.points, triangulation.triangles, history, reason)
-        if weights.alpha > 0.0 and len(history.residual) - last_change > PATIENCE:
-            if min(history.residual[-PATIENCE:]) >= min(history.residual[last_change:-PATIENCE]):
-                mover.halve_steps()
-                last_change = len(history.residual)
+        if weights.alpha > 0.0 and _stands_still(history.residual[last_change:]):
+            mover.halve_steps()
+            last_change = len(history.residual)
         mover.sweep()
+
+
+def _stands_still(residuals: list[float]) -> bool:
+    """Whether the last residuals brought no new smallest one."""
+    return len(residuals) > PATIENCE and min(residuals[-PATIENCE:]) >= min(residuals[:-PATIENCE])
 
 
 class _Mover:

@@ -1,13 +1,14 @@
 """Spherical centroidal Voronoi tessellations: from a number of cells to converged generators."""
 
 import time
+import warnings
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.density import Density, uniform
-from mesh.errors import MeshError
+from mesh.errors import HemisphereError, MeshError, MeshWarning
 from mesh.generators import DEFAULT_SEED, MAXIMUM_CELLS, bisect, icosahedral_level, icosahedral_mesh, starting_points
 from mesh.optimizer import Callback, Limits, Optimizer, ScvtResult
 from mesh.ordering import hilbert_order, renumber
@@ -25,6 +26,8 @@ ADVICE = {
     "iterations": "allow more iterations",
     "seconds": "allow more time",
     "round-off": "round-off allows no further step; ask for a larger tolerance",
+    "quadrature": "the density jumps or changes much within a cell; smooth it, start from random-root, ask for more "
+    "cells or for a larger tolerance",
 }
 
 
@@ -61,7 +64,14 @@ def optimize(
     if method in SAMPLING_METHODS:
         return probabilistic_lloyd(points, density, SAMPLING_METHODS[method], seed, limits, callback)
     descent = "lbfgs" if method == "multilevel" else method
-    return Optimizer(points, triangles, descent, None if density is uniform else density).run(limits, callback)
+    if density is uniform:
+        return Optimizer(points, triangles, descent).run(limits, callback)
+    try:
+        return Optimizer(points, triangles, descent, density).run(limits, callback)
+    except HemisphereError as error:
+        raise MeshError(
+            f"the density draws {len(points)} generators to one hemisphere; ask for more cells, or give it a floor"
+        ) from error
 
 
 def generate_scvt(request: Request, limits: Limits | None = None, callback: Callback | None = None) -> ScvtResult:
@@ -81,9 +91,19 @@ def generate_scvt(request: Request, limits: Limits | None = None, callback: Call
 
 
 def check_converged(result: ScvtResult, limits: Limits) -> None:
-    """Raise `MeshError`, with what would help, where the tolerance is not reached."""
+    """Raise `MeshError`, with what would help, where the tolerance is not reached.
+
+    Warns with `MeshWarning` where the residual is acceptable only (see `Limits`).
+    """
     residual = result.history.residual[-1]
-    if residual > limits.tolerance:
+    if result.reason == "quadrature" and residual <= limits.acceptable:
+        warnings.warn(
+            f"the mesh of {len(result.points)} cells is taken as converged at a centroid residual of {residual:.1e} "
+            f"mean spacings; kinks of the density do not let it fall to {limits.tolerance:.1e}",
+            MeshWarning,
+            stacklevel=3,
+        )
+    elif residual > limits.tolerance:
         raise MeshError(
             f"the mesh of {len(result.points)} cells stands at a centroid residual of {residual:.1e} mean spacings "
             f"after {result.history.iterations} iterations and does not reach the tolerance {limits.tolerance:.1e}: "

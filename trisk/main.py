@@ -93,15 +93,12 @@ def mesh(
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh.build import default_tolerance
+    from mesh.build import default_limits
     from mesh.gridded_density import Shaping
-    from mesh.optimizer import Limits
     from trisk.generate import MeshOptions, generate
     from trisk.report import print_quality
 
-    if tolerance is None:
-        tolerance = default_tolerance(density, method)
-    limits = Limits(tolerance, max_iterations, max_seconds)
+    limits = default_limits(density, method, tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
     options = MeshOptions(
         cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet

@@ -1,12 +1,21 @@
+from collections.abc import Iterator
+from itertools import count
+from types import SimpleNamespace
+
 import numba
 import numpy as np
 import pytest
 from plain_moments import mass_and_moment
 
+import mesh.nested
+import mesh.optimizer
+import mesh.scvt
 from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.delaunay import delaunay
+from mesh.density import RefinedBox
 from mesh.generators import fibonacci_points
 from mesh.moments import masses_and_moments
+from mesh.nested import nested_scvt
 from mesh.optimizer import Iterate, Limits, ScvtResult
 from mesh.scvt import Request, generate_scvt, optimize
 from mesh.sphere import arc_length, dot, normalize
@@ -175,3 +184,38 @@ def test_unreachable_tolerance_and_wrong_requests_are_refused() -> None:
         generate_scvt(Request(100, method="newton"))
     with pytest.raises(MeshError, match="multilevel method bisects the icosahedron, which gives no mesh of 100 cells"):
         generate_scvt(Request(100, method="multilevel"))
+
+
+@pytest.fixture
+def seconds(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    """A clock that goes on by one second whenever somebody looks."""
+    clock = count()
+    ticking = SimpleNamespace(perf_counter=lambda: float(next(clock)))
+    for module in (mesh.optimizer, mesh.scvt, mesh.nested):
+        monkeypatch.setattr(module, "time", ticking)
+    return clock
+
+
+def test_seconds_are_for_all_levels_together(seconds: Iterator[int]) -> None:
+    """Each of the three levels would take 60 seconds."""
+    with pytest.raises(MeshError, match="allow more time"):
+        generate_scvt(Request(10242, method="multilevel"), Limits(1e-18, seconds=60.0))
+    assert 60 <= next(seconds) <= 75
+
+
+def test_seconds_are_for_all_reseedings_together(seconds: Iterator[int]) -> None:
+    """Each of the eight begins with iterate 0; with little more time than the first descent took, the second ends."""
+    coarse = generate_scvt(Request(162))
+    numbers: list[int] = []
+
+    def refine(limits: Limits) -> int:
+        begin = next(seconds)
+        numbers.clear()
+        nested_scvt(coarse.points, coarse.triangles, RefinedBox(), None, limits, lambda it: numbers.append(it.number))
+        return next(seconds) - begin
+
+    refine(Limits(1e-3))
+    assert numbers.count(0) == 9
+    first = numbers.index(0, 1)
+    assert refine(Limits(1e-3, seconds=first + 10.0)) <= first + 20
+    assert numbers.count(0) == 2
