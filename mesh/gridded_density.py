@@ -99,7 +99,7 @@ def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping |
 
     Raises `MeshError` where there is neither, or where a named density would have to be shaped.
     """
-    if name.endswith(".nc"):
+    if name.endswith(".nc") or (name not in NAMED and Path(name).is_file()):
         return read_density(name, variable, shaping)
     if name not in NAMED:
         raise MeshError(

@@ -84,9 +84,11 @@ def well_center(
     if free.any():
         residual = work.residual()
         for _ in range(RELAX_ROUNDS):
+            if work.is_late():
+                break
             work.relax(free, goal + MARGIN)
             previous, residual = residual, work.residual()
-            if residual > WORTHWHILE * previous or work.is_late():
+            if residual > WORTHWHILE * previous:
                 break
         work.settle(goal)
     final = work.delaunay().triangles
