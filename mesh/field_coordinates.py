@@ -46,7 +46,8 @@ def read_coordinates(
         missing = " and ".join(kind for kind, variable in zip(NAMES, found, strict=True) if variable is None)
         raise MeshError(
             f"{path}: {field.name} has dimensions {field.dimensions}, and no {missing} is found along them; "
-            "give the coordinates the attribute standard_name (latitude, longitude), or xCell, yCell, zCell on nCells"
+            "give the coordinates the attributes standard_name (latitude, longitude) and units (degrees, radians), "
+            "or give xCell, yCell and zCell on nCells"
         )
     north, east = read_numbers(latitude, path), read_numbers(longitude, path)
     colatitude = _is_colatitude(latitude)

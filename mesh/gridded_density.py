@@ -45,7 +45,10 @@ class Shaping:
             )
 
     def apply(self, values: Array, smooth: Callable[[Array], Array]) -> Array:
-        """The shaped values, with `smooth` for one pass; a multiple of them where they would leave the range."""
+        """The shaped values, with `smooth` for one pass; a multiple of them where they would leave the range.
+
+        Raises `MeshError` where a power is not finite.
+        """
         shaped = np.maximum(values, self.floor)
         exponent = math.frexp(shaped.max())[1]
         if abs(exponent) * max(1.0, abs(self.power)) > SAFE_EXPONENT:
@@ -53,7 +56,13 @@ class Shaping:
         for _ in range(self.smoothing):
             shaped = smooth(shaped)
         with np.errstate(divide="ignore", over="ignore"):
-            return shaped**self.power
+            powers = shaped**self.power
+        if not np.isfinite(powers).all():
+            raise MeshError(
+                f"the field goes from {shaped.min():g} to {shaped.max():g} and has no finite power {self.power:g}; "
+                "give it a floor"
+            )
+        return powers
 
 
 @dataclass(frozen=True)
@@ -138,6 +147,8 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
     name = f"{path}: {variable}"
     if field.values.min() < 0.0 and shaping.floor == 0.0:
         raise MeshError(f"{name} falls to {field.values.min():g}; a density is not negative, give it a floor")
+    if field.values.max() <= 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{name} is zero everywhere; a density is positive somewhere")
     return FileDensity(_interpolated(field, shaping, name), path, variable, shaping, field.digest)
 
 
@@ -148,7 +159,7 @@ def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -
         points = np.stack([read_numbers(axis, path) for axis in axes], axis=1)
         if not np.linalg.norm(points, axis=1).all():
             raise MeshError(f"{path}: xCell, yCell and zCell are all zero at a cell; mend the coordinates")
-        return _scattered(_values_along(variable, ("nCells",), path), normalize(points))
+        return _scattered(_values_along(variable, ("nCells",), path), normalize(points), path)
     latitude, north, longitude, east = read_coordinates(file, variable, path)
     rows, columns = latitude.dimensions, longitude.dimensions
     if len(rows) == len(columns) == 1 and rows != columns:
@@ -166,12 +177,14 @@ def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -
             a, b, c = (array.T if turned else array for array in (values, north, east))
             if (b == b[:, :1]).all() and (c == c[:1]).all():
                 return _Field(a, b[:, 0], c[0])
-    return _scattered(values.ravel(), from_lonlat(east.ravel(), north.ravel()))
+    return _scattered(values.ravel(), from_lonlat(east.ravel(), north.ravel()), path)
 
 
-def _scattered(values: Array, points: Array) -> _Field:
+def _scattered(values: Array, points: Array, path: Path) -> _Field:
     if len(values) <= SMOOTHING_NEIGHBOURS:
-        raise MeshError(f"a density on {len(values)} points is too coarse; give more than {SMOOTHING_NEIGHBOURS}")
+        raise MeshError(
+            f"{path}: a density on {len(values)} points is too coarse; give more than {SMOOTHING_NEIGHBOURS}"
+        )
     return _Field(values, np.empty(0), np.empty(0), points)
 
 

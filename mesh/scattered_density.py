@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
 from mesh.density import Density
-from mesh.errors import MeshWarning
+from mesh.errors import MeshError, MeshWarning
 from mesh.generators import fibonacci_points
 from mesh.half_edges import build_twins, first_corners
 from mesh.moments import mean_spacing
@@ -52,7 +52,8 @@ def density_from_cells(centers: Array, values: Array, triangles: Index | None = 
 def density_from_points(points: Array, values: Array, name: str) -> Density:
     """Interpolate `values` (n,) of any unit vectors `points` (n, 3), which may coincide or cover a part of the sphere.
 
-    Beyond that part the nearest value holds; a `MeshWarning` says so with the `name` of the field.
+    Beyond that part the nearest value holds; a `MeshWarning` says so with the `name` of the field. Raises `MeshError`
+    where the points are so few that they and the part beyond do not go round the sphere.
     """
     tree = cKDTree(points)
     pairs = tree.query_pairs(COINCIDENT, output_type="ndarray")
@@ -69,7 +70,10 @@ def density_from_points(points: Array, values: Array, name: str) -> Density:
         tell_of_part(name)
         points = np.concatenate([points, fillers[far]])
         values = np.concatenate([values, values[nearest[far]]])
-    return density_from_cells(points, values)
+    try:
+        return density_from_cells(points, values)
+    except MeshError as error:
+        raise MeshError(f"{name} lies on points that do not go round the sphere ({error})") from error
 
 
 def tell_of_part(name: str) -> None:

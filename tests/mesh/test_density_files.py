@@ -305,3 +305,39 @@ def test_density_on_cells_may_be_in_any_coordinates(radius: float, tmp_path: Pat
         found.append(density(POINTS))
     np.testing.assert_array_equal(read_quietly(tmp_path / "a.nc")(centers)[:1], values[:1])
     np.testing.assert_allclose(found[0], found[1], rtol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("values", "shaping", "words"),
+    [
+        (0.0 * VALUES, Shaping(), "density is zero everywhere"),
+        (
+            np.where(VALUES > 1.0, VALUES, 0.0),
+            Shaping(power=-4.0),
+            "field goes from 0 to .* has no finite power -4",
+        ),
+        (VALUES[:1], Shaping(), "density has one latitude; a grid needs two at least"),
+    ],
+)
+def test_fields_that_give_no_density_are_refused(
+    values: np.ndarray, shaping: Shaping, words: str, tmp_path: Path
+) -> None:
+    path = write_file(
+        tmp_path / "grid.nc",
+        lat=(("lat",), LATITUDE[: len(values)], NORTH),
+        lon=(("lon",), LONGITUDE, EAST),
+        density=(("lat", "lon"), values, {}),
+    )
+    with pytest.raises(MeshError, match=words):
+        read_density(path, shaping=shaping)
+
+
+def test_coordinates_of_one_and_two_dimensions_are_refused(tmp_path: Path) -> None:
+    path = write_file(
+        tmp_path / "grid.nc",
+        lat=(("y", "x"), TWO[1], NORTH),
+        lon=(("x",), LONGITUDE, EAST),
+        density=(("y", "x"), VALUES, {}),
+    )
+    with pytest.raises(MeshError, match=r"lat has dimensions \('y', 'x'\) and lon has \('x',\); both must have one"):
+        read_density(path)

@@ -263,7 +263,7 @@ def test_sampling_methods_end_well(trisk, method: str, tmp_path: Path) -> None:
 
 def test_seconds_are_for_the_whole_call(trisk, tmp_path: Path) -> None:
     """None are left for centring well once the mesh is converged."""
-    options = ("--cells", 642, "--density", "refined-circle", "--tolerance", 10, "--well-centred", "--max-seconds", 0)
+    options = ("--cells", 162, "--start", "random", "--tolerance", 10, "--well-centred", "--max-seconds", 0)
     code, _, err = trisk("mesh", *options, "-o", tmp_path / "mesh.nc", "-q")
     assert code == 2
     assert "keeps a triangle of quality" in err
