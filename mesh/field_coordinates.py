@@ -7,6 +7,7 @@ file has none, by the names in common use. What has to be assumed is said in a `
 import re
 import warnings
 from pathlib import Path
+from typing import NamedTuple
 
 import netCDF4
 import numpy as np
@@ -33,12 +34,18 @@ QUARTER = 0.5 * np.pi
 LARGEST_LONGITUDE = 4.0 * np.pi
 
 
-def read_coordinates(
-    file: netCDF4.Dataset, field: netCDF4.Variable, path: str | Path
-) -> tuple[netCDF4.Variable, Array, netCDF4.Variable, Array]:
-    """Variable and values, in radians, of the latitude of a field and of its longitude.
+class Coordinate(NamedTuple):
+    """Values, in radians, with the name of their variable and its dimensions."""
 
-    Latitudes lie in [-pi/2, pi/2]. Raises `MeshError` where they are not found, or are no latitudes and longitudes.
+    values: Array
+    name: str
+    dimensions: tuple[str, ...]
+
+
+def read_coordinates(file: netCDF4.Dataset, field: netCDF4.Variable, path: str | Path) -> tuple[Coordinate, Coordinate]:
+    """The latitude, in [-pi/2, pi/2], and the longitude of a field, in one dimension or two.
+
+    Raises `MeshError` where they are not found, or are no latitudes and longitudes.
     """
     found = [_find(file, field, kind) for kind in ("latitude", "longitude")]
     latitude, longitude = found
@@ -65,7 +72,15 @@ def read_coordinates(
             f"{path}: {longitude.name} goes from {_degrees(east.min())} to {_degrees(east.max())} degrees, which "
             "are no longitudes; mend its values or its units"
         )
-    return latitude, np.clip(north, -QUARTER, QUARTER), longitude, east
+    return _coordinate(latitude, np.clip(north, -QUARTER, QUARTER)), _coordinate(longitude, east)
+
+
+def _coordinate(variable: netCDF4.Variable, values: Array) -> Coordinate:
+    """A coordinate without the dimensions of length one, such as time, that it has beyond two."""
+    if values.ndim <= 2:
+        return Coordinate(values, variable.name, variable.dimensions)
+    kept = tuple(name for name, size in zip(variable.dimensions, values.shape, strict=True) if size > 1)
+    return Coordinate(values.squeeze(), variable.name, kept)
 
 
 def read_numbers(variable: netCDF4.Variable, path: str | Path) -> Array:

@@ -160,7 +160,8 @@ def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -
         if not np.linalg.norm(points, axis=1).all():
             raise MeshError(f"{path}: xCell, yCell and zCell are all zero at a cell; mend the coordinates")
         return _scattered(_values_along(variable, ("nCells",), path), normalize(points), path)
-    latitude, north, longitude, east = read_coordinates(file, variable, path)
+    latitude, longitude = read_coordinates(file, variable, path)
+    north, east = latitude.values, longitude.values
     rows, columns = latitude.dimensions, longitude.dimensions
     if len(rows) == len(columns) == 1 and rows != columns:
         return _Field(_values_along(variable, (*rows, *columns), path), north, east)

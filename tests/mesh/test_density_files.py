@@ -102,6 +102,13 @@ LEGAL = {
         },
         (("rlat", "rlon"), VALUES, {"coordinates": "lon lat"}),
     ),
+    "coordinates with a time": (
+        {
+            "XLAT": (("Time", "south_north", "west_east"), TWO[1][None], {"units": "degree_north"}),
+            "XLONG": (("Time", "south_north", "west_east"), TWO[0][None], {"units": "degree_east"}),
+        },
+        (("Time", "south_north", "west_east"), VALUES[None], {}),
+    ),
     "two points of a staggered grid": (
         {
             "ULAT": (("y", "x"), TWO[1] - 2.5, NORTH),
