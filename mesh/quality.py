@@ -42,6 +42,19 @@ def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:
 
     The residual is for the `density`, by default that of which the mesh tells (see `mesh.density_record`).
     """
+    return quality_and_note(mesh, density)[0]
+
+
+def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple[Quality, str]:
+    """What `mesh_quality` gives, and what a reader must know of the residual; empty where there is nothing to add."""
+    density, note = density_of(mesh) if density is None else (density, "")
+    notes = [note] if note else []
+    if mesh.fixed_cells is not None:
+        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held are not counted")
+    return _measured(mesh, density), "; ".join(notes)
+
+
+def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
     sigma, q = neighbour_distance_ratio(mesh), triangle_quality(mesh)
     chords = edge_chords(mesh)
     return Quality(
@@ -51,7 +64,7 @@ def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:
         sigma_min=float(sigma.min()),
         q_avg=float(q.mean()),
         q_min=float(q.min()),
-        residual=centroid_residual(mesh, density),
+        residual=float("nan") if density is None else centroid_residual(mesh, density),
         obtuse=int(np.count_nonzero(obtuse_triangles(mesh))),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
     )
@@ -84,14 +97,8 @@ def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
     return squares[:, 2] > squares[:, 0] + squares[:, 1]
 
 
-def centroid_residual(mesh: VoronoiMesh, density: Density | None = None) -> float:
-    """Largest distance from generator to constrained centroid, in mean spacings; generators that were held don't count.
-
-    The density is by default that of which the mesh tells; not a number where that is none.
-    """
-    density = density_of(mesh)[0] if density is None else density
-    if density is None:
-        return float("nan")
+def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
+    """Largest distance from generator to constrained centroid, in mean spacings; generators that were held don't count."""
     points = normalize(mesh.cell_points)
     triangulation = Triangulation(points, mesh.cells_on_vertex)
     cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
@@ -103,11 +110,3 @@ def centroid_residual(mesh: VoronoiMesh, density: Density | None = None) -> floa
     if mesh.fixed_cells is not None:
         distances = distances[~mesh.fixed_cells]
     return float(distances.max(initial=0.0)) / mean_spacing(mesh.n_cells)
-
-
-def residual_note(mesh: VoronoiMesh) -> str:
-    """What a reader must know of the residual of a mesh; empty where there is nothing to add."""
-    notes = [density_of(mesh)[1]]
-    if mesh.fixed_cells is not None:
-        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held are not counted")
-    return "; ".join(note for note in notes if note)

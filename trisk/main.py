@@ -139,15 +139,16 @@ def quality(
             require_possible_folder(output)
         print_table1(max_level, output)
         return
-    from mesh import mesh_quality, read_mesh
-    from mesh.quality import residual_note
+    from mesh import read_mesh
+    from mesh.quality import quality_and_note
 
     read = read_mesh(file, recompute_metrics)
     if as_json:
-        measured = asdict(mesh_quality(read))
+        found, note = quality_and_note(read)
+        measured = asdict(found)
         if not math.isfinite(measured["residual"]):
             measured["residual"] = None
-        typer.echo(json.dumps({**measured, "residual_note": residual_note(read)}))
+        typer.echo(json.dumps({**measured, "residual_note": note}))
     else:
         print_quality(read, str(file))
 

@@ -9,9 +9,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from mesh import VoronoiMesh, mesh_quality
+from mesh import VoronoiMesh
 from mesh.optimizer import Callback, Iterate
-from mesh.quality import residual_note
+from mesh.quality import quality_and_note
 from swe.output import DIAGNOSTICS_FILE, load_record, read_series
 
 
@@ -44,7 +44,7 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
 
 def print_quality(mesh: VoronoiMesh, name: str) -> None:
     """Print the quality of `mesh` as a table."""
-    measured, note = mesh_quality(mesh), residual_note(mesh)
+    measured, note = quality_and_note(mesh)
     known = "unknown" if math.isnan(measured.residual) else f"{measured.residual:.2e} mean spacings"
     rows = [
         ("cells", str(measured.cells)),

@@ -12,7 +12,7 @@ from mesh.density_record import density_of, name_of
 from mesh.gridded_density import Shaping, read_density
 from mesh.nested import nested_scvt
 from mesh.optimizer import Limits
-from mesh.quality import residual_note
+from mesh.quality import quality_and_note
 from mesh.scvt import Request, generate_scvt
 from mesh.sphere import normalize
 from mesh.well_centered import well_center
@@ -42,10 +42,10 @@ def mesh(tmp_path: Path) -> VoronoiMesh:
 def test_residual_is_that_converged_to(mesh: VoronoiMesh) -> None:
     assert mesh.density_name.endswith("grid.nc")
     assert mesh_quality(mesh).residual <= TOLERANCE
-    assert residual_note(mesh) == ""
+    assert quality_and_note(mesh)[1] == ""
     between = replace(mesh, density_name="", density_source="")
     assert mesh_quality(between).residual > 1e-4
-    assert residual_note(between) == "for the density interpolated between the cells"
+    assert quality_and_note(between)[1] == "for the density interpolated between the cells"
 
 
 def test_density_is_looked_for_in_this_folder_too(
@@ -61,7 +61,7 @@ def test_density_is_looked_for_in_this_folder_too(
 def test_changed_file_is_noticed(mesh: VoronoiMesh, tmp_path: Path) -> None:
     grid(tmp_path / "grid.nc", 1.001)
     assert np.isnan(mesh_quality(mesh).residual)
-    assert residual_note(mesh).endswith("grid.nc, which is not there or has changed since")
+    assert quality_and_note(mesh)[1].endswith("grid.nc, which is not there or has changed since")
     grid(tmp_path / "grid.nc")
     assert mesh_quality(mesh).residual <= TOLERANCE
 
@@ -81,7 +81,7 @@ def test_functions_are_not_in_the_file_but_may_be_given(tmp_path: Path) -> None:
     read = reread(scvt_mesh(162, towards_x), tmp_path / "mesh.nc")
     assert read.density_name == "function towards_x"
     assert np.isnan(mesh_quality(read).residual)
-    assert residual_note(read) == "unknown, since the density was the function towards_x"
+    assert quality_and_note(read)[1] == "unknown, since the density was the function towards_x"
     assert mesh_quality(read, towards_x).residual <= 1e-6
 
 
@@ -100,7 +100,7 @@ def test_held_generators_do_not_count(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read.fixed_cells, result.fixed)
     assert mesh_quality(read).residual == pytest.approx(result.history.residual[-1], rel=1e-3)
     assert mesh_quality(replace(read, fixed_cells=None)).residual > 1e-3
-    assert residual_note(read) == f"{result.fixed.sum()} generators that were held are not counted"
+    assert quality_and_note(read)[1] == f"{result.fixed.sum()} generators that were held are not counted"
     better = well_center(result.points, result.triangles, box, result.fixed)
     centred = mesh_of(replace(result, points=better.points, triangles=better.triangles), box)
     assert mesh_quality(centred).residual == pytest.approx(better.residual, rel=1e-6)

@@ -5,9 +5,10 @@ import pytest
 from density_files import field, write_file
 
 from mesh import MeshError, mesh_quality, scvt_mesh
+from mesh.delaunay import delaunay
 from mesh.generators import fibonacci_points
 from mesh.gridded_density import read_density
-from mesh.scattered_density import density_from_cells, density_from_points
+from mesh.scattered_density import _walk, density_from_cells, density_from_points
 from mesh.sphere import normalize, to_lonlat
 
 
@@ -55,6 +56,17 @@ def test_nothing_jumps() -> None:
     circle = np.cos(angle)[:, None] * a + np.sin(angle)[:, None] * b
     change = np.abs(np.diff(density_from_cells(centers, random_points(642, 6)[:, 0] + 2.0)(circle)))
     assert 0.0 < change.max() < 0.01
+
+
+def test_walk_that_goes_nowhere_ends_in_the_right_triangle() -> None:
+    """Where twins lead back, all triangles are tried."""
+    centers, probes = random_points(50, 7), random_points(30, 8)
+    triangles = delaunay(centers)
+    astray = np.repeat(3 * np.arange(96, dtype=np.int32)[:, None], 3, axis=1)
+    for probe in range(30):
+        a, b, c = centers[triangles[_walk(probes, probe, centers, triangles, astray, 5)]]
+        assert min(np.linalg.det([b, c, probes[probe]]), np.linalg.det([c, a, probes[probe]])) >= 0.0
+        assert np.linalg.det([a, b, probes[probe]]) >= 0.0
 
 
 def test_points_that_coincide_are_one() -> None:
