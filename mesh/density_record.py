@@ -40,9 +40,9 @@ def source_of(density: Density) -> str:
     source = {
         "path": str(density.path.resolve()),
         "variable": density.variable,
-        "floor": density.shaping.floor,
-        "power": density.shaping.power,
-        "smoothing": density.shaping.smoothing,
+        "floor": float(density.shaping.floor),
+        "power": float(density.shaping.power),
+        "smoothing": int(density.shaping.smoothing),
         "sha256": density.digest,
     }
     return json.dumps(source)
@@ -63,6 +63,8 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
         return None, f"unknown, since the density was {what}"
     if np.ptp(mesh.mesh_density) == 0.0:
         return uniform, ""
+    if not (np.isfinite(mesh.mesh_density).all() and mesh.mesh_density.min() > 0.0):
+        return None, "unknown, since the density at the centres is not positive and finite everywhere"
     between = density_from_cells(normalize(mesh.cell_points), mesh.mesh_density, mesh.cells_on_vertex)
     return between, "for the density interpolated between the cells"
 

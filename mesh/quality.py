@@ -98,7 +98,7 @@ def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
 
 
 def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
-    """Largest distance from generator to constrained centroid, in mean spacings; generators that were held don't count."""
+    """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
     points = normalize(mesh.cell_points)
     triangulation = Triangulation(points, mesh.cells_on_vertex)
     cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)

@@ -1,3 +1,4 @@
+import json
 from pathlib import Path
 
 import netCDF4
@@ -6,6 +7,7 @@ import pytest
 
 from mesh import MeshError, MeshWarning, mesh_from_points, mesh_quality, read_mesh, scvt_mesh, write_mesh
 from mesh.density import NAMED, RefinedBox, RefinedCircle, SmoothTransition, uniform
+from mesh.density_record import source_of
 from mesh.generators import fibonacci_points, random_points
 from mesh.gridded_density import Shaping, find_density, read_density
 from mesh.moments import masses_and_moments
@@ -323,3 +325,22 @@ def test_end_by_kinks_is_accepted_where_no_tolerance_is_asked_for() -> None:
     assert 1e-6 < mesh_quality(mesh, jump).residual <= 1e-4
     with pytest.raises(MeshError, match="the density jumps or changes much within a cell"):
         scvt_mesh(100, jump, tolerance=1e-6)
+
+
+def test_arguments_may_be_numbers_of_numpy_and_paths(tmp_path: Path) -> None:
+    latitude, longitude = np.arange(-90.0, 91.0, 30.0), np.arange(0.0, 360.0, 30.0)
+    path = write_grid(tmp_path / "grid.nc", np.ones((7, 12)), latitude, longitude)
+    plain = scvt_mesh(100, str(path), "random", tolerance=1e-3, max_iterations=500, seed=3)
+    mesh = scvt_mesh(
+        np.int32(100), path, "random", tolerance=np.float64(1e-3), max_iterations=np.int16(500), seed=np.uint8(3)
+    )
+    np.testing.assert_array_equal(mesh.cell_points, plain.cell_points)
+    density = read_density(path, shaping=Shaping(np.float32(0.5), np.float32(1.0), np.int64(1)))
+    assert json.loads(source_of(density)) == {
+        "path": str(path),
+        "variable": "density",
+        "floor": 0.5,
+        "power": 1.0,
+        "smoothing": 1,
+        "sha256": density.digest,
+    }

@@ -114,3 +114,7 @@ def test_mesh_that_tells_nothing_has_the_density_of_its_centres() -> None:
     assert density is not None
     np.testing.assert_array_equal(density(normalize(foreign.cell_points)), foreign.mesh_density)
     assert note == "for the density interpolated between the cells"
+    for wrong in (np.nan, -1.0, 0.0):
+        damaged = replace(foreign, mesh_density=np.where(np.arange(162) == 5, wrong, foreign.mesh_density))
+        assert np.isnan(mesh_quality(damaged).residual)
+        assert "not positive and finite everywhere" in quality_and_note(damaged)[1]
