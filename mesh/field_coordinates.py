@@ -19,8 +19,8 @@ DEGREES = re.compile(r"(?:deg|degrees?|°)[_ ]?(north|n|east|e|true|t)?")
 RADIANS = re.compile(r"rad|radians?")
 DIRECTIONS = {"north": "latitude", "n": "latitude", "east": "longitude", "e": "longitude"}
 NAMES = {
-    "latitude": re.compile(r"(.*_)?(co-?)?lat(itude)?(_.*|cell|\d)?|[a-z]lat|gphi[a-z]"),
-    "longitude": re.compile(r"(.*_)?lon(g|gitude)?(_.*|cell|\d)?|[a-z]long?|glam[a-z]"),
+    "latitude": re.compile(r"(.*_|geo)?(co-?)?lat(itude)?s?(_.*|cell|\d)?|[a-z]lat|gphi[a-z]"),
+    "longitude": re.compile(r"(.*_|geo)?lon(g|gitude)?s?(_.*|cell|\d)?|[a-z]long?|glam[a-z]"),
 }
 AXES = {"latitude": ("y", "yc"), "longitude": ("x", "xc")}
 """Values of the attribute `axis`, and names, that mean an angle where the unit is one."""
@@ -139,7 +139,13 @@ def _is_colatitude(variable: netCDF4.Variable) -> bool:
 def _in_radians(
     variables: tuple[netCDF4.Variable, netCDF4.Variable], values: tuple[Array, Array], path: str | Path
 ) -> list[Array]:
-    """Latitudes and longitudes in radians; where no unit is given, one is assumed from the other or from the values."""
+    """Latitudes and longitudes in radians; where no unit is given, one is assumed from the other or from the values.
+
+    Raises `MeshError` for other units.
+    """
+    for variable in variables:
+        if (unit := _unit(variable)) and not (DEGREES.fullmatch(unit) or RADIANS.fullmatch(unit)):
+            raise MeshError(f"{path}: {variable.name} has the unit {unit}; give it in degrees or radians")
     in_degrees = [bool(DEGREES.fullmatch(unit)) if (unit := _unit(variable)) else None for variable in variables]
     without = [variable.name for variable, known in zip(variables, in_degrees, strict=True) if known is None]
     if without:

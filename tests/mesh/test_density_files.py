@@ -128,6 +128,21 @@ def test_legal_variants_of_a_grid_are_one_density(name: str, tmp_path: Path, pla
     np.testing.assert_allclose(read_quietly(path)(POINTS), plain, rtol=1e-12)
 
 
+@pytest.mark.parametrize(
+    "names",
+    [
+        *(("lat", "lon"), ("LAT", "LON"), ("Latitude", "Longitude"), ("lats", "lons"), ("lat", "long"), ("y", "x")),
+        *(("nav_lat", "nav_lon"), ("lat_0", "lon_0"), ("yc", "xc"), ("clat", "clon"), ("TLAT", "TLONG")),
+        *(("gphit", "glamt"), ("geolat_t", "geolon_t"), ("XLAT", "XLONG"), ("lat_rho", "lon_rho")),
+    ],
+)
+def test_names_in_common_use_are_known(names: tuple[str, str], tmp_path: Path, plain: np.ndarray) -> None:
+    latitude, longitude = names
+    angles = {latitude: (("j",), LATITUDE, {"units": "degrees"}), longitude: (("i",), LONGITUDE, {"units": "degrees"})}
+    path = write_file(tmp_path / "grid.nc", **angles, density=(("j", "i"), VALUES, {}))
+    np.testing.assert_allclose(read_quietly(path)(POINTS), plain, rtol=1e-12)
+
+
 def test_packed_values_are_unpacked(tmp_path: Path, plain: np.ndarray) -> None:
     packed = (("lat", "lon"), VALUES, {"scale_factor": 1e-3, "add_offset": 2.0})
     lat = (("lat",), LATITUDE, {"scale_factor": 0.5, "add_offset": 10.0, **NORTH})
@@ -182,6 +197,13 @@ REFUSED = {
     ),
     "degrees that say radians": ("lat", LATITUDE, LONGITUDE, RADIANS, "lat goes from -5156.62 to 5156.62 degrees"),
     "metres that say degrees": ("lat", LATITUDE, 1e5 * LONGITUDE, {"units": "degrees"}, "which are no longitudes"),
+    "kilometres": (
+        "lat",
+        LATITUDE,
+        LONGITUDE,
+        {"units": "km", "standard_name": "latitude"},
+        "lat has the unit km; give it in degrees or radians",
+    ),
     "metres": ("lat", LATITUDE, LONGITUDE, {"units": "m"}, "no latitude and longitude is found along them"),
     "gaps in coordinates": ("lat", np.ma.masked_greater(LATITUDE, 80), LONGITUDE, NORTH, "2 of 37 values of lat"),
 }
@@ -190,7 +212,7 @@ REFUSED = {
 @pytest.mark.parametrize("name", REFUSED)
 def test_no_coordinates_are_refused(name: str, tmp_path: Path) -> None:
     latitude_name, latitude, longitude, units, words = REFUSED[name]
-    east = EAST if units is NORTH else units
+    east = units if units in (RADIANS, {"units": "degrees"}, {"units": "m"}) else EAST
     coordinates = {latitude_name: (("n",), latitude, units), "lon": (("m",), longitude, east)}
     path = write_file(tmp_path / "grid.nc", **coordinates, density=(("n", "m"), VALUES, {}))
     with pytest.raises(MeshError, match=words):
