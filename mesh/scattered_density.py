@@ -56,10 +56,8 @@ def density_from_points(points: Array, values: Array, name: str) -> Density:
     where the points are so few that they and the part beyond do not go round the sphere.
     """
     tree = cKDTree(points)
-    pairs = tree.query_pairs(COINCIDENT, output_type="ndarray")
     first = np.ones(len(points), bool)
-    first[pairs.max(axis=1, initial=0)] = False
-    first[0] = True
+    first[tree.query_pairs(COINCIDENT, output_type="ndarray")[:, 1]] = False
     points, values = points[first], values[first]
     tree = cKDTree(points)
     spacing = max(float(tree.query(points, k=2)[0][:, 1].max()), mean_spacing(len(points)))
