@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Index
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
+from mesh.density_record import read_generation, write_generation
 from mesh.errors import MeshError, MeshWarning
 from mesh.files import dataset, written_aside
 from mesh.metrics import compute_metrics
@@ -43,6 +44,7 @@ def write_mesh(mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
             write_mesh_variables(file, mesh)
+            write_generation(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
@@ -140,8 +142,10 @@ def _mesh_from_file(file: netCDF4.Dataset) -> VoronoiMesh:
         present[ring] = _fill_beyond(present[ring], present["n_edges_on_cell"], FILL)
     for ring, fill in (("edges_on_edge", FILL), ("weights_on_edge", 0.0)):
         present[ring] = _fill_beyond(present[ring], present["n_edges_on_edge"], fill)
-    name = str(getattr(file, "density_name", ""))
-    return VoronoiMesh(sphere_radius=_sphere_radius(file), density_name=name, **present)
+    name, source, fixed = read_generation(file, len(present["x_cell"]))
+    return VoronoiMesh(
+        sphere_radius=_sphere_radius(file), density_name=name, density_source=source, fixed_cells=fixed, **present
+    )
 
 
 def _sphere_radius(file: netCDF4.Dataset) -> float:
