@@ -86,7 +86,7 @@ def arrange_weights(weights: Array, arrays: Arrays, topology: Topology, exact: A
     Where the vertices of an edge stood against the tangent, its weights may be those of the tangent turned round:
     those of which the signs agree with `exact`, what the generators give, are meant.
     """
-    result = np.zeros(topology.edges_on_edge.shape)
+    result: Array = np.zeros(topology.edges_on_edge.shape)
     used = topology.edges_on_edge != FILL
     width = min(result.shape[1], weights.shape[1])
     source = np.argsort(_padded(arrays["edges_on_edge"], topology.n_edges_on_edge), axis=1)[:, :width]

@@ -63,7 +63,6 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
         **{name: getattr(exact, name) for name in METRICS_NAMES},
         mesh_density=density,
         sphere_radius=1.0,
-        density_name=content.density_name,
     )
     rebuilt = unit.scaled(radius)
     if recompute_metrics:
@@ -78,24 +77,32 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: Changes)
     """Unit vectors (n_cells, 3) of the generators, and the radius of the sphere."""
     if all(name in arrays for name in GENERATORS):
         points = np.stack([arrays[name] for name in GENERATORS], axis=1)
-        require(np.isfinite(points), "cells", "xCell, yCell or zCell is not a finite number")
+        for name in GENERATORS:
+            require(np.isfinite(arrays[name]), "cells", f"{BY_NAME[name].file_name} is not a finite number")
         distance = np.sqrt(dot(points, points))
         radius = _positive(attribute)
         if radius is None or np.any(np.abs(distance / radius - 1.0) > OUTSIDE_TOLERANCE):
             radius = _radius_of(points, distance, attribute, changes)
-        return normalize(points), radius
+        return _unit_vectors(points, distance), radius
     if not all(name in arrays for name in ("lon_cell", "lat_cell")):
         raise MeshError(
             "xCell, yCell and zCell are missing, and lonCell and latCell too; a mesh file must have its generators"
         )
     longitude, latitude = arrays["lon_cell"], arrays["lat_cell"]
-    require(np.isfinite(longitude) & np.isfinite(latitude), "cells", "lonCell or latCell is not a finite number")
+    require(np.isfinite(longitude), "cells", "lonCell is not a finite number")
+    require(np.isfinite(latitude), "cells", "latCell is not a finite number")
     require(np.abs(latitude) <= 0.5 * np.pi + OUTSIDE_TOLERANCE, "cells", "latCell is beyond a pole (radians)")
     radius = _positive(attribute)
     if radius is None:
         radius = 1.0
         changes.said.append("without a sphere_radius the sphere is taken to have radius 1")
     return from_lonlat(longitude, latitude), radius
+
+
+def _unit_vectors(points: Array, distance: Array) -> Array:
+    """The points (n, 3) on the unit sphere; those that are there but for round-off stay as they are, bit for bit."""
+    there = np.abs(distance - 1.0) <= 2.0 * np.finfo(float).eps
+    return np.where(there[:, None], points, normalize(points))
 
 
 def _positive(attribute: object) -> float | None:

@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from mesh.arrays import Array, Index
-from mesh.errors import MeshError
+from mesh.errors import HemisphereError, MeshError
 from mesh.sphere import dot
 
 
@@ -30,7 +30,7 @@ def delaunay(points: Array) -> Index:
             f"generators {missing[:5].tolist()} coincide with others; remove the duplicates"
         )
     if np.any(hull.equations[:, 3] >= 0.0):
-        raise MeshError("the generators lie in one hemisphere; spread them over the whole sphere")
+        raise HemisphereError("the generators lie in one hemisphere; spread them over the whole sphere")
     a, b, c = (points[triangles[:, k]] for k in range(3))
     inward = dot(np.cross(b - a, c - a), a + b + c) < 0.0
     triangles[inward, 1], triangles[inward, 2] = triangles[inward, 2], triangles[inward, 1].copy()

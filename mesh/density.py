@@ -1,6 +1,6 @@
 """Density functions: how closely generators lie where.
 
-A density is any callable that takes unit vectors (m, 3) and returns values (m,), not negative and not all zero. In a
+A density is any callable that takes unit vectors (m, 3) and returns m numbers, not negative and not all zero. In a
 centroidal Voronoi tessellation the widths of the cells go like density^(-1/4) (Gersho's conjecture; Ju, Ringler and
 Gunzburger 2011, section 3), so only ratios of values matter.
 
@@ -97,8 +97,32 @@ NAMED: dict[str, Density] = {
 }
 
 
-def check_density(values: Array, points: Array) -> None:
-    """Raise `MeshError` where a value (m,) of a density at points (m, 3) is negative or not finite."""
+def density_at(density: Density, points: Array) -> Array:
+    """Values (m,) of a density at unit vectors (m, 3).
+
+    Takes what a user's function may give: any numeric type, lists, a column (m, 1), or one number for all points.
+    Raises `MeshError` where the values are of another shape or type, negative or not finite.
+    """
+    given = density(points)
+    try:
+        values = np.asarray(given)
+    except ValueError:  # a list of lists of different lengths
+        values = np.empty(0, object)
+    if values.dtype.kind not in "biuf":
+        raise MeshError(f"the density gives {type(given).__name__} instead of real numbers; return one per point")
+    if values.shape == ():
+        values = np.full(len(points), values)
+    if values.shape not in ((len(points),), (len(points), 1)):
+        raise MeshError(
+            f"the density gives values of shape {values.shape} at {len(points)} points; return one per point"
+        )
+    values = np.ascontiguousarray(values.reshape(len(points)), dtype=np.float64)
+    _check(values, points)
+    return values
+
+
+def _check(values: Array, points: Array) -> None:
+    """Raise `MeshError` where a value (m,) at points (m, 3) is negative or not finite."""
     wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
     if len(wrong):
         longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[wrong[:1]]))

@@ -8,6 +8,10 @@ class MeshError(ValueError):
     """A mesh, its file or a request for one is wrong; the message says what, where and what to do."""
 
 
+class HemisphereError(MeshError):
+    """All points lie in one hemisphere, so that no triangulation of the sphere joins them."""
+
+
 class MeshWarning(UserWarning):
     """A mesh is usable, but less exact than our own, or parts of it were rebuilt; the message says how much."""
 

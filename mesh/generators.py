@@ -1,10 +1,12 @@
 """Starting points on the unit sphere: bisection of the icosahedron, the Fibonacci spiral, and random points."""
 
+import math
+
 import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.delaunay import delaunay
-from mesh.density import Density, check_density, uniform
+from mesh.density import Density, density_at, uniform
 from mesh.errors import MeshError
 from mesh.half_edges import build_twins
 from mesh.sphere import normalize
@@ -15,6 +17,9 @@ DEFAULT_SEED = 0
 
 PROBES = 20_000
 """Points at which the largest value of a density is sought."""
+
+SAFE_EXPONENT = 200
+"""Densities whose largest value lies within this power of two of one can be squared and summed as they are."""
 
 MARGIN = 1.05
 SMALLEST_ACCEPTANCE = 1e-3
@@ -96,28 +101,37 @@ def random_points(count: int, density: Density, generator: np.random.Generator) 
 
     Raises `MeshError` where the density is negative, not finite, or zero nearly everywhere.
     """
-    bound = _upper_bound(density)
+    density = within_range(density)
+    bound = MARGIN * _largest_value(density)
     drawn: list[Array] = []
     missing, accepted = count, 0.5
     while missing > 0:
         points = normalize(generator.normal(size=(int(1.2 * missing / accepted) + 100, 3)))
-        values = density(points)
-        check_density(values, points)
-        kept = points[generator.random(len(points)) * bound < values]
+        kept = points[generator.random(len(points)) * bound < density_at(density, points)]
         drawn.append(kept[:missing])
         missing -= len(drawn[-1])
         accepted = max(len(kept) / len(points), SMALLEST_ACCEPTANCE)
     return np.concatenate(drawn)
 
 
-def _upper_bound(density: Density) -> float:
-    """A little more than the largest value of `density` at points everywhere on the sphere."""
-    probes = fibonacci_points(PROBES)
-    values = density(probes)
-    check_density(values, probes)
-    if not values.max() > 0.0:
+def within_range(density: Density) -> Density:
+    """The density itself or, where its values are so large or small that products of them are lost, a multiple of it.
+
+    Only ratios of a density matter. The factor is a power of four, which changes no digit, nor of roots. Raises
+    `MeshError` where the density is negative, not finite, or zero everywhere.
+    """
+    exponent = 2 * (math.frexp(_largest_value(density))[1] // 2)
+    if abs(exponent) <= SAFE_EXPONENT:
+        return density
+    return lambda points: np.ldexp(density_at(density, points), -exponent)
+
+
+def _largest_value(density: Density) -> float:
+    """The largest value of `density` at points everywhere on the sphere."""
+    largest = float(density_at(density, fibonacci_points(PROBES)).max())
+    if not largest > 0.0:
         raise MeshError("the density is zero everywhere it was tried; give one that is positive")
-    return MARGIN * float(values.max())
+    return largest
 
 
 def starting_points(
@@ -141,7 +155,7 @@ def starting_points(
     if start == "random":
         return random_points(cells, density, np.random.default_rng(seed))
     if start == "random-root":
-        return random_points(cells, lambda points: np.sqrt(density(points)), np.random.default_rng(seed))
+        return random_points(cells, lambda points: np.sqrt(density_at(density, points)), np.random.default_rng(seed))
     if start != "icosahedral":
         raise MeshError(f"there is no start named '{start}'; choose one of {', '.join(STARTS)}")
     if level is None:

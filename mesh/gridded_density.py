@@ -1,24 +1,26 @@
-"""Densities by name, and from a field in a NetCDF file on a latitude-longitude grid or on a mesh."""
+"""Densities by name, and from a field in a NetCDF file on a latitude-longitude grid, on a mesh or at any points."""
 
+import hashlib
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
 import netCDF4
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 from scipy.spatial import cKDTree
 
 from mesh.arrays import Array
 from mesh.density import NAMED, Density
 from mesh.errors import MeshError
+from mesh.field_coordinates import read_coordinates, read_numbers
 from mesh.files import dataset
-from mesh.sphere import normalize, to_lonlat
+from mesh.generators import SAFE_EXPONENT
+from mesh.grid_interpolation import density_on_grid
+from mesh.scattered_density import density_from_points
+from mesh.sphere import from_lonlat, normalize
 
 DENSITY_VARIABLE = "density"
-LATITUDE_NAMES = ("lat", "latitude")
-LONGITUDE_NAMES = ("lon", "longitude")
-INTERPOLATION_NEIGHBOURS = 3
 SMOOTHING_NEIGHBOURS = 6
 MOST_PASSES = 10_000
 
@@ -44,12 +46,62 @@ class Shaping:
             )
 
     def apply(self, values: Array, smooth: Callable[[Array], Array]) -> Array:
-        """The shaped values, with `smooth` for one pass."""
+        """The shaped values, with `smooth` for one pass; a multiple of them where they would leave the range.
+
+        Raises `MeshError` where a power is not finite.
+        """
         shaped = np.maximum(values, self.floor)
+        exponent = math.frexp(shaped.max())[1]
+        if abs(exponent) * max(1.0, abs(self.power)) > SAFE_EXPONENT:
+            shaped = np.ldexp(shaped, -exponent)
         for _ in range(self.smoothing):
             shaped = smooth(shaped)
-        with np.errstate(divide="ignore"):
-            return shaped**self.power
+        with np.errstate(divide="ignore", over="ignore"):
+            powers = shaped**self.power
+        if not np.isfinite(powers).all():
+            raise MeshError(
+                f"the field goes from {shaped.min():g} to {shaped.max():g} and has no finite power {self.power:g}; "
+                "give it a floor"
+            )
+        return powers
+
+
+@dataclass(frozen=True)
+class FileDensity:
+    """A density from a file, and where it came from; `digest` is that of values and coordinates as read."""
+
+    function: Density
+    path: Path
+    variable: str
+    shaping: Shaping
+    digest: str
+
+    def __call__(self, points: Array) -> Array:
+        """Values (m,) at unit vectors (m, 3)."""
+        return self.function(points)
+
+
+@dataclass(frozen=True)
+class _Field:
+    """Values of a field and where they are.
+
+    On a grid, values (rows, columns) at latitudes (rows,) and longitudes (columns,), radians; else values (n,) at unit
+    vectors `points` (n, 3).
+    """
+
+    values: Array
+    latitude: Array
+    longitude: Array
+    points: Array | None = None
+
+    @property
+    def digest(self) -> str:
+        """SHA-256, in hexadecimal, of values and places."""
+        digest = hashlib.sha256()
+        for array in (self.values, self.latitude, self.longitude, self.points):
+            if array is not None:
+                digest.update(np.ascontiguousarray(array).tobytes())
+        return digest.hexdigest()
 
 
 def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> Density:
@@ -57,7 +109,7 @@ def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping |
 
     Raises `MeshError` where there is neither, or where a named density would have to be shaped.
     """
-    if name.endswith(".nc"):
+    if name.endswith(".nc") or (name not in NAMED and Path(name).is_file()):
         return read_density(name, variable, shaping)
     if name not in NAMED:
         raise MeshError(
@@ -70,100 +122,94 @@ def find_density(name: str, variable: str = DENSITY_VARIABLE, shaping: Shaping |
     return NAMED[name]
 
 
-def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> Density:
+def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Shaping | None = None) -> FileDensity:
     """Return the density that `variable` of a file holds, interpolated between its values.
 
-    On a grid, the variable has dimensions latitude and longitude with coordinates `lat` and `lon` in degrees; on a
-    mesh, the dimension `nCells`, with `xCell`, `yCell`, `zCell` in the file. Raises `MeshError` where the file or
-    the variable cannot be used.
+    The variable has two dimensions of latitude and longitude, or one of points, such as `nCells`; others must have
+    length one. The coordinates are found as `mesh.field_coordinates` says, or are `xCell`, `yCell` and `zCell`. Raises
+    `MeshError` where the file or the variable cannot be used.
     """
     shaping = Shaping() if shaping is None else shaping
-    if not Path(path).is_file():
+    path = Path(path)
+    if not path.is_file():
         raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
     try:
         with dataset(path) as file:
             if variable not in file.variables:
-                raise MeshError(f"{path}: there is no variable named {variable}; name the field {DENSITY_VARIABLE}")
-            field = file[variable]
-            if field.dimensions == ("nCells",):
-                return _density_on_mesh(file, _values(field, shaping, path), shaping, path)
-            return _density_on_grid(file, field, shaping, path)
+                raise MeshError(
+                    f"{path}: there is no variable named {variable}; name one of those that it has, which are "
+                    f"{', '.join(file.variables)}"
+                )
+            field = _read_field(file, file[variable], path)
     except (OSError, RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, MeshError):
             raise
         raise MeshError(f"{path}: holds no density that can be used ({error}); give a NetCDF file with one") from error
+    name = f"{path}: {variable}"
+    if field.values.min() < 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{name} falls to {field.values.min():g}; a density is not negative, give it a floor")
+    if field.values.max() <= 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{name} is zero everywhere; a density is positive somewhere")
+    return FileDensity(_interpolated(field, shaping, name), path, variable, shaping, field.digest)
 
 
-def _values(field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Array:
-    """Values of a field, none of them missing, and none negative where no floor has been asked for."""
-    values = np.ma.filled(np.ma.asarray(field[:]).astype(float), np.nan)
-    wrong = np.count_nonzero(~np.isfinite(values))
-    if wrong:
-        raise MeshError(f"{path}: {wrong} values of {field.name} are missing or not finite; fill them first")
-    if values.min() < 0.0 and shaping.floor == 0.0:
-        raise MeshError(f"{path}: {field.name} falls to {values.min():g}; a density is not negative, give it a floor")
-    return values
-
-
-def _density_on_grid(file: netCDF4.Dataset, field: netCDF4.Variable, shaping: Shaping, path: str | Path) -> Density:
-    """Bilinear interpolation in latitude and longitude, periodic in longitude, constant beyond the last rows."""
-    names = [name for choices in (LATITUDE_NAMES, LONGITUDE_NAMES) for name in choices if name in file.variables]
-    if len(names) != 2 or len(field.dimensions) != 2:
+def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> _Field:
+    """The field with its coordinates; those of a grid may be written out in two dimensions each."""
+    axes = [file[name] for name in ("xCell", "yCell", "zCell") if name in file.variables]
+    if len(axes) == 3 and all(axis.dimensions == ("nCells",) for axis in axes) and "nCells" in variable.dimensions:
+        points = np.stack([read_numbers(axis, path) for axis in axes], axis=1)
+        if not np.linalg.norm(points, axis=1).all():
+            raise MeshError(f"{path}: xCell, yCell and zCell are all zero at a cell; mend the coordinates")
+        return _scattered(_values_along(variable, ("nCells",), path), normalize(points), path)
+    latitude, longitude = read_coordinates(file, variable, path)
+    north, east = latitude.values, longitude.values
+    rows, columns = latitude.dimensions, longitude.dimensions
+    if len(rows) == len(columns) == 1 and rows != columns:
+        return _Field(_values_along(variable, (*rows, *columns), path), north, east)
+    if set(rows) != set(columns) or len(rows) > 2:
         raise MeshError(
-            f"{path}: {field.name} has dimensions {field.dimensions}; it must live on (lat, lon) with coordinates lat "
-            "and lon in degrees, or on nCells"
+            f"{path}: {latitude.name} has dimensions {rows} and {longitude.name} has {columns}; both must have one "
+            "dimension each, or the same"
         )
-    latitude, longitude = (np.radians(np.asarray(file[name][:]).astype(float)) for name in names)
-    if not (np.isfinite(latitude).all() and np.isfinite(longitude).all()):
-        raise MeshError(f"{path}: {' or '.join(names)} is not finite everywhere; mend the coordinates")
-    values = _values(field, shaping, path)
-    if values.shape != (len(latitude), len(longitude)):
-        raise MeshError(f"{path}: {field.name} has shape {values.shape} instead of (lat, lon)")
-    if field.dimensions != tuple(file[name].dimensions[0] for name in names):
-        raise MeshError(f"{path}: {field.name} has dimensions {field.dimensions}; order them as (lat, lon)")
-    # Both ends of a full circle are one meridian.
-    latitude, rows = np.unique(latitude, return_index=True)
-    if len(latitude) < 2:
-        raise MeshError(f"{path}: {field.name} has one latitude; a grid needs two at least")
-    longitude, columns = np.unique(np.round(longitude % (2.0 * np.pi), 12) % (2.0 * np.pi), return_index=True)
-    values = shaping.apply(values[np.ix_(rows, columns)], _smooth_grid)
-    # One column more on each side makes the grid periodic.
-    longitude = np.concatenate([longitude[-1:] - 2.0 * np.pi, longitude, longitude[:1] + 2.0 * np.pi])
-    values = np.concatenate([values[:, -1:], values, values[:, :1]], axis=1)
-    interpolate = RegularGridInterpolator((latitude, longitude), values)
-
-    def density(points: Array) -> Array:
-        east, north = to_lonlat(points)
-        return interpolate(np.stack([np.clip(north, latitude[0], latitude[-1]), east], axis=-1))
-
-    return density
+    values = _values_along(variable, rows, path)
+    if rows != columns:
+        east = east.T
+    if len(rows) == 2:
+        for turned in (False, True):
+            a, b, c = (array.T if turned else array for array in (values, north, east))
+            if (b == b[:, :1]).all() and (c == c[:1]).all():
+                return _Field(a, b[:, 0], c[0])
+    return _scattered(values.ravel(), from_lonlat(east.ravel(), north.ravel()), path)
 
 
-def _smooth_grid(values: Array) -> Array:
-    """Mean of each value, twice weighted, with those to its east, west, north and south."""
-    padded = np.pad(values, ((1, 1), (0, 0)), mode="edge")
-    around = padded[:-2] + padded[2:] + np.roll(values, 1, axis=1) + np.roll(values, -1, axis=1)
-    return 0.5 * values + 0.125 * around
+def _scattered(values: Array, points: Array, path: Path) -> _Field:
+    if len(values) <= SMOOTHING_NEIGHBOURS:
+        raise MeshError(
+            f"{path}: a density on {len(values)} points is too coarse; give more than {SMOOTHING_NEIGHBOURS}"
+        )
+    return _Field(values, np.empty(0), np.empty(0), points)
 
 
-def _density_on_mesh(file: netCDF4.Dataset, values: Array, shaping: Shaping, path: str | Path) -> Density:
-    if not all(name in file.variables for name in ("xCell", "yCell", "zCell")):
-        raise MeshError(f"{path}: a density on nCells needs xCell, yCell and zCell in the same file")
-    centers = normalize(np.stack([np.asarray(file[f"{axis}Cell"][:]).astype(float) for axis in "xyz"], axis=1))
-    if len(centers) <= SMOOTHING_NEIGHBOURS or not np.isfinite(centers).all():
-        raise MeshError(f"{path}: xCell, yCell and zCell must be finite, and of more than {SMOOTHING_NEIGHBOURS} cells")
-    neighbours = cKDTree(centers).query(centers, k=SMOOTHING_NEIGHBOURS + 1)[1][:, 1:]
-    shaped = shaping.apply(values, lambda field: 0.5 * field + 0.5 * field[neighbours].mean(axis=1))
-    return density_from_cells(centers, shaped)
+def _values_along(variable: netCDF4.Variable, dimensions: tuple[str, ...], path: Path) -> Array:
+    """Values of a field with the given dimensions in their order, the others, of length one, left out."""
+    others = [
+        (name, size) for name, size in zip(variable.dimensions, variable.shape, strict=True) if name not in dimensions
+    ]
+    for name, size in others:
+        if size != 1:
+            raise MeshError(
+                f"{path}: {variable.name} has {size} entries along {name}; write the one that is wanted to a file of "
+                "its own"
+            )
+    kept = [name for name in variable.dimensions if name in dimensions]
+    values = read_numbers(variable, path).reshape([len(variable.group().dimensions[name]) for name in kept])
+    return values.transpose([kept.index(name) for name in dimensions])
 
 
-def density_from_cells(centers: Array, values: Array) -> Density:
-    """Interpolate `values` (n,) at unit vectors `centers` (n, 3): the nearest three, weighted by inverse distance."""
-    tree = cKDTree(centers)
-
-    def density(points: Array) -> Array:
-        distance, cell = tree.query(points, k=INTERPOLATION_NEIGHBOURS)
-        weight = 1.0 / np.maximum(distance, np.finfo(float).tiny)
-        return (weight * values[cell]).sum(axis=1) / weight.sum(axis=1)
-
-    return density
+def _interpolated(field: _Field, shaping: Shaping, name: str) -> Density:
+    """The shaped field between its values."""
+    if field.points is None:
+        return density_on_grid(field.latitude, field.longitude, field.values, shaping.apply, name)
+    neighbours = cKDTree(field.points).query(field.points, k=SMOOTHING_NEIGHBOURS + 1)[1][:, 1:]
+    shaped = shaping.apply(field.values, lambda values: 0.5 * values + 0.5 * values[neighbours].mean(axis=1))
+    return density_from_points(field.points, shaped, name)

@@ -3,6 +3,7 @@
 import hashlib
 import os
 import warnings
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
@@ -12,6 +13,7 @@ import numpy as np
 
 from mesh.assembly import assembled_mesh
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
+from mesh.density_record import read_generation, write_generation
 from mesh.errors import MeshError, MeshWarning
 from mesh.files import dataset, written_aside
 from mesh.mesh_file import read_content
@@ -51,6 +53,7 @@ def write_mesh(
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
             write_mesh_variables(file, mesh)
+            write_generation(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
@@ -111,7 +114,9 @@ def read_mesh(path: str | os.PathLike[str], recompute_metrics: bool = False) -> 
         with dataset(path) as file:
             file.set_auto_mask(False)
             content = read_content(file)
+            name, source, fixed = read_generation(file, content.n_cells)
         mesh, changes = assembled_mesh(content, recompute_metrics)
+        mesh = replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
         residuals = validate_metrics(mesh, None, OUTSIDE_TOLERANCE)
     except MeshError as error:
         raise MeshError(f"{path}: {error}") from error

@@ -31,7 +31,7 @@ class FileContent:
 
     arrays: dict[str, NDArray]
     radius: object
-    density_name: str
+    n_cells: int
     single_precision: bool
 
 
@@ -54,7 +54,7 @@ def read_content(file: netCDF4.Dataset) -> FileContent:
     return FileContent(
         arrays=arrays,
         radius=getattr(file, "sphere_radius", None),
-        density_name=str(getattr(file, "density_name", "")),
+        n_cells=len(file.dimensions["nCells"]) if "nCells" in file.dimensions else 0,
         single_precision=any(source.dtype.itemsize < np.dtype(np.float64).itemsize for source in sources),
     )
 

@@ -6,15 +6,16 @@ part keep their width, and fine ones get that width over the fourth root of the 
 that gives just this is `natural_number`.
 """
 
+import time
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.density import Density, check_density
+from mesh.density import Density, density_at
 from mesh.errors import MeshError
-from mesh.generators import DEFAULT_SEED, fibonacci_points
+from mesh.generators import DEFAULT_SEED, MAXIMUM_CELLS, fibonacci_points, within_range
 from mesh.optimizer import Callback, Limits, Optimizer, ScvtResult
 from mesh.ordering import hilbert_order
 from mesh.reseed import reseed
@@ -50,11 +51,12 @@ def nested_scvt(
 
     `cells` is the number of generators in the end; by default that which keeps the widths of the fixed cells in
     proportion. `seed` steers how bad triangles are shaken away. Raises `MeshError` for a number that the region cannot
-    take, or where the tolerance is not reached.
+    take, or where the tolerance is not reached; the seconds of the `limits` are for all together.
     """
+    begin = time.perf_counter()
     limits = Limits() if limits is None else limits
-    values = density(points)
-    check_density(values, points)
+    density = within_range(density)
+    values = density_at(density, points)
     if not values.min() > 0.0:
         raise MeshError("the density is zero at a generator of the mesh to refine; give it a floor above zero")
     ratio = _Refinement(density, float(values.min()))
@@ -71,7 +73,7 @@ def nested_scvt(
     fixed = fixed[order]
 
     def converge(points: Array) -> ScvtResult:
-        return Optimizer(points, density=density, fixed=fixed).run(limits, callback)
+        return Optimizer(points, density=density, fixed=fixed).run(limits.since(begin), callback)
 
     result = reseed(converge(start), converge, WANTED_QUALITY, RESEEDINGS, seed, fixed)
     check_converged(result, limits)
@@ -86,11 +88,20 @@ class _Refinement:
     lowest: float
 
     def __call__(self, points: Array) -> Array:
-        return (self.density(points) / self.lowest) ** 0.25
+        return (density_at(self.density, points) / self.lowest) ** 0.25
 
     def natural_number(self, n_coarse: int) -> int:
-        """Number of points that gives the wanted widths: the coarse number times the mean of the squared ratio."""
-        return round(n_coarse * float(np.mean(self(fibonacci_points(PROBES)) ** 2)))
+        """Number of points that gives the wanted widths: the coarse number times the mean of the squared ratio.
+
+        Raises `MeshError` where that is more than a mesh can have.
+        """
+        number = n_coarse * float(np.mean(self(fibonacci_points(PROBES)) ** 2))
+        if not number <= MAXIMUM_CELLS:
+            raise MeshError(
+                f"the density falls to {self.lowest:g} of its largest value, which asks for {number:.1e} cells; "
+                "give it a floor"
+            )
+        return round(number)
 
 
 @dataclass(frozen=True)

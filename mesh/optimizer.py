@@ -9,7 +9,7 @@ it rise where the slope says that it falls.
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,11 +73,16 @@ LARGEST_TOLERANCE = 10.0
 
 @dataclass(frozen=True)
 class Limits:
-    """When to stop: at a residual in mean spacings, or after so many iterations or seconds."""
+    """When to stop: at a residual in mean spacings, or after so many iterations or seconds.
+
+    A descent that the quadrature of the density ended above the tolerance still counts as converged where the residual
+    is `acceptable`.
+    """
 
     tolerance: float = 1e-8
     iterations: int = 10_000
     seconds: float = float("inf")
+    acceptable: float = 0.0
 
     def __post_init__(self) -> None:
         if not 0.0 < self.tolerance <= LARGEST_TOLERANCE:
@@ -87,6 +92,10 @@ class Limits:
             )
         if not self.seconds >= 0.0:
             raise MeshError(f"the time allowed is {self.seconds:g} s; it must not be negative")
+
+    def since(self, begin: float) -> "Limits":
+        """These limits for the rest of work that began when `time.perf_counter` gave `begin`."""
+        return replace(self, seconds=max(0.0, self.seconds - (time.perf_counter() - begin)))
 
     def reason_to_stop(self, history: History) -> str | None:
         """Which limit the last iteration reached: `tolerance`, `iterations` or `seconds`; None for none."""
@@ -101,7 +110,8 @@ class Limits:
 class ScvtResult:
     """Generators (n_cells, 3), their Delaunay triangles, the convergence history, and why the optimiser stopped.
 
-    `reason` is `tolerance`, `iterations`, `seconds` or `round-off`; `fixed` (n_cells,) marks generators that were held.
+    `reason` is `tolerance`, `iterations`, `seconds`, or what hides any further step: `round-off` or, under a density,
+    `quadrature`. `fixed` (n_cells,) marks generators that were held.
     """
 
     points: Array
@@ -172,15 +182,16 @@ class Optimizer:
         self._gradient_square = 0.0
         self._fixed = fixed
         self._evaluate: Callable[..., None] = evaluate
+        self._weighted = density is not None or fixed is not None
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
         self._least_energy, self._patience = np.inf, PATIENCE
-        if density is not None or fixed is not None:
+        if self._weighted:
             self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
-        """Iterate until one of the `limits` is reached or round-off allows no further step."""
+        """Iterate until one of the `limits` is reached or round-off or quadrature allow no further step."""
         history, begin = History(), time.perf_counter()
         self._evaluate_trial(self._memory.steps[0])
         self._accept_start()
@@ -193,7 +204,7 @@ class Optimizer:
                 callback(Iterate(history.iterations, state.residual, state.energy, state.points))
             reason = limits.reason_to_stop(history)
             if reason is None and (_stagnates(history, self._patience) or not self._step()):
-                reason = "round-off"
+                reason = "quadrature" if self._weighted else "round-off"
             if reason is not None:
                 self._triangulation.update(state.points)
                 return ScvtResult(state.points, self._triangulation.triangles, history, reason, self._fixed)
@@ -208,7 +219,7 @@ class Optimizer:
         self._memory.clear()
         if self._search_along_new_direction():
             return True
-        if self._noise == RELATIVE_ROUND_OFF:
+        if not self._weighted:
             return False
         slot = self._memory.spare_slot()
         self._memory.steps[slot] = -self._current.gradient.ravel()

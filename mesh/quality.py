@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
-from mesh.density import NAMED
-from mesh.gridded_density import density_from_cells
+from mesh.density import Density, uniform
+from mesh.density_record import density_of
 from mesh.moments import masses_and_moments, mean_spacing
 from mesh.sphere import arc_length, dot, normalize
 from mesh.triangulation import Triangulation
@@ -21,9 +21,9 @@ class Quality:
 
     `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
     longest distance to a neighbour; `q` of a triangle with sides a, b, c is (b+c-a)(c+a-b)(a+b-c)/(abc), one if
-    equilateral. Distances are chords. `residual` is the largest distance between a generator and the constrained
-    centroid of its cell, in mean spacings; `obtuse` counts Delaunay
-    triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    equilateral. Distances are chords. `residual` is the largest distance between a generator that was free to move and
+    the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known;
+    `obtuse` counts Delaunay triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
     """
 
     cells: int
@@ -37,8 +37,24 @@ class Quality:
     area_ratio: float
 
 
-def mesh_quality(mesh: VoronoiMesh) -> Quality:
-    """Measure `mesh`; see `Quality`."""
+def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:
+    """Measure `mesh`; see `Quality`.
+
+    The residual is for the `density`, by default that of which the mesh tells (see `mesh.density_record`).
+    """
+    return quality_and_note(mesh, density)[0]
+
+
+def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple[Quality, str]:
+    """What `mesh_quality` gives, and what a reader must know of the residual; empty where there is nothing to add."""
+    density, note = density_of(mesh) if density is None else (density, "")
+    notes = [note] if note else []
+    if mesh.fixed_cells is not None:
+        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held are not counted")
+    return _measured(mesh, density), "; ".join(notes)
+
+
+def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
     sigma, q = neighbour_distance_ratio(mesh), triangle_quality(mesh)
     chords = edge_chords(mesh)
     return Quality(
@@ -48,7 +64,7 @@ def mesh_quality(mesh: VoronoiMesh) -> Quality:
         sigma_min=float(sigma.min()),
         q_avg=float(q.mean()),
         q_min=float(q.min()),
-        residual=centroid_residual(mesh),
+        residual=float("nan") if density is None else centroid_residual(mesh, density),
         obtuse=int(np.count_nonzero(obtuse_triangles(mesh))),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
     )
@@ -81,18 +97,16 @@ def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
     return squares[:, 2] > squares[:, 0] + squares[:, 1]
 
 
-def centroid_residual(mesh: VoronoiMesh) -> float:
-    """Largest distance from generator to constrained centroid, in mean spacings, for the density of the mesh.
-
-    The density is the one named, or else interpolated between the values at the centres.
-    """
+def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
+    """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
     points = normalize(mesh.cell_points)
     triangulation = Triangulation(points, mesh.cells_on_vertex)
     cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
-    if np.ptp(mesh.mesh_density) == 0.0:
+    if density is uniform:
         _, moment, _ = masses_and_moments(*cells)
         distances = arc_length(points, normalize(moment))
     else:
-        density = NAMED.get(mesh.density_name) or density_from_cells(points, mesh.mesh_density)
         distances = centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
-    return float(distances.max()) / mean_spacing(mesh.n_cells)
+    if mesh.fixed_cells is not None:
+        distances = distances[~mesh.fixed_cells]
+    return float(distances.max(initial=0.0)) / mean_spacing(mesh.n_cells)

@@ -28,7 +28,10 @@ def reseed(
     seed: int,
     fixed: NDArray[np.bool_],
 ) -> ScvtResult:
-    """Return the best mesh in so many tries, starting from a converged one; `fixed` generators are not displaced."""
+    """Return the best mesh in so many tries, starting from a converged one; `fixed` generators are not displaced.
+
+    The tries end where `converge` has no time left.
+    """
     generator = np.random.default_rng(seed)
     lacking = _shortfall(result, wanted)
     for _ in range(tries):
@@ -36,6 +39,8 @@ def reseed(
             break
         near = near_bad_triangles(result.points, result.triangles, wanted, SHAKEN_RINGS) & ~fixed
         other = converge(_shaken(result.points, result.triangles, near, generator))
+        if other.reason == "seconds":
+            break
         if other.reason == result.reason and _shortfall(other, wanted) < lacking:
             result, lacking = other, _shortfall(other, wanted)
     return result

@@ -97,12 +97,15 @@ class VoronoiMesh(Metrics, Topology):
     """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
 
     `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density`) where
-    that is known.
+    that is known, and `density_source` where it is found (see `mesh.density_record`) where it comes from a file.
+    `fixed_cells` (n_cells,) marks generators that were held while the others moved to their centroids, if any were.
     """
 
     mesh_density: Array
     sphere_radius: float
     density_name: str = ""
+    density_source: str = ""
+    fixed_cells: NDArray[np.bool_] | None = None
 
     @property
     def cell_points(self) -> Array:

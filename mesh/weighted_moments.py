@@ -21,8 +21,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.density import Density, check_density
+from mesh.density import Density, density_at
 from mesh.errors import MeshError
+from mesh.generators import within_range
 from mesh.moments import BLOCK
 from mesh.sphere import to_lonlat
 
@@ -168,10 +169,13 @@ def _gradient_and_partials(
 
 
 class WeightedCells:
-    """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move."""
+    """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move.
+
+    Where the density is extremely large or small, the integrals are those of a multiple of it.
+    """
 
     def __init__(self, density: Density, n_cells: int, fixed: NDArray[np.bool_] | None = None) -> None:
-        self._density = density
+        self._density = within_range(density)
         self._sums = np.empty((n_cells, 6))
         self._fixed = np.zeros(n_cells, bool) if fixed is None else fixed
         self._nodes = np.empty((0, 3))
@@ -188,9 +192,7 @@ class WeightedCells:
                 self._nodes = np.empty((count, 3))
             cells, nodes = (points, circumcenters, ring_starts, rings, first, last), self._nodes[:count]
             _quadrature_points(*cells, nodes)
-            values = np.ascontiguousarray(self._density(nodes), dtype=np.float64)
-            check_density(values, nodes)
-            _sum_cells(*cells, values, self._sums)
+            _sum_cells(*cells, density_at(self._density, nodes), self._sums)
         empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
         if len(empty):
             longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[empty[:1]]))

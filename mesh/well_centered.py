@@ -10,6 +10,7 @@ where that makes the worse of their two triangles better. Relaxing is Lloyd's me
 centroids of the cells, and become those of the new cells after each round.
 """
 
+import time
 from dataclasses import dataclass
 
 import numba
@@ -68,12 +69,14 @@ def well_center(
     density: Density = uniform,
     fixed: NDArray[np.bool_] | None = None,
     goal: float = GOAL,
+    seconds: float = float("inf"),
 ) -> WellCentered:
     """Raise the least quality of a converged mesh of unit vectors `points` (n, 3) to the `goal`.
 
-    Generators that are `fixed` (n,) stay, and so do those far from triangles below the goal. Deterministic.
+    Generators that are `fixed` (n,) stay, and so do those far from triangles below the goal. No round begins after so
+    many `seconds`. Deterministic where that does not happen.
     """
-    work = _Work(points, triangles, density, fixed)
+    work = _Work(points, triangles, density, fixed, time.perf_counter() + seconds)
     before = residual = work.residual()
     free = work.near(goal + MARGIN, RELAX_RINGS)
     work.settle(goal)
@@ -81,6 +84,8 @@ def well_center(
     if free.any():
         residual = work.residual()
         for _ in range(RELAX_ROUNDS):
+            if work.is_late():
+                break
             work.relax(free, goal + MARGIN)
             previous, residual = residual, work.residual()
             if residual > WORTHWHILE * previous:
@@ -93,7 +98,9 @@ def well_center(
 class _Work:
     """Points that move, and the triangles whose quality counts."""
 
-    def __init__(self, points: Array, triangles: Index, density: Density, fixed: NDArray[np.bool_] | None) -> None:
+    def __init__(
+        self, points: Array, triangles: Index, density: Density, fixed: NDArray[np.bool_] | None, deadline: float
+    ) -> None:
         n = len(points)
         self.points = points.copy()
         self._triangles = np.array(triangles, np.int32, order="C")
@@ -101,6 +108,11 @@ class _Work:
         self._first_corner, self._degrees = first_corners(self._triangles, n)
         self._fixed = np.zeros(n, bool) if fixed is None else fixed
         self._cells = WeightedCells(density, n, fixed)
+        self._deadline = deadline
+
+    def is_late(self) -> bool:
+        """Whether no time is left."""
+        return time.perf_counter() >= self._deadline
 
     def delaunay(self) -> Triangulation:
         """The Delaunay triangulation of the points: the present one where that is well-centred."""
@@ -118,7 +130,7 @@ class _Work:
         """Raise the qualities below the goal, whatever the centroids say."""
         for _ in range(SETTLE_ROUNDS):
             free = self.near(goal, SETTLE_RINGS)
-            if not free.any():
+            if not free.any() or self.is_late():
                 return
             self._minimize(free, self.points[free], np.zeros(np.count_nonzero(free)), goal, SETTLE_ITERATIONS)
             arrays = (self._triangles, self._twins, self._first_corner, self._degrees)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mesh.build import UNIFORM_TOLERANCE, VARIABLE_TOLERANCE, mesh_from_points
+from mesh.build import UNIFORM_TOLERANCE, VARIABLE_TOLERANCE, mesh_from_points, mesh_of
 from mesh.density import NAMED, Density, uniform
 from mesh.nested import nested_scvt
 from mesh.optimizer import Limits
@@ -38,7 +38,7 @@ def _scvt(
     def make(cells: int) -> VoronoiMesh:
         function = _density(density)
         result = generate_scvt(Request(cells, start, method, function), Limits(tolerance))
-        return mesh_from_points(result.points, result.triangles, function, density)
+        return mesh_of(result, function)
 
     return make
 
@@ -47,7 +47,7 @@ def _nested(cells: int) -> VoronoiMesh:
     coarse = generate_scvt(Request((cells - 2) // NESTED_SHARE + 2))
     density = _density("refined-box")
     result = nested_scvt(coarse.points, coarse.triangles, density, limits=Limits(VARIABLE_TOLERANCE))
-    return mesh_from_points(result.points, result.triangles, density, "refined-box")
+    return mesh_of(result, density)
 
 
 def _density(name: str) -> Density:

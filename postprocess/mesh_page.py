@@ -47,7 +47,7 @@ def nested_meshes(tell: Tell) -> list[Start]:
         request = Request(NESTED_CELLS, density=box, seed=seed)
         limits = Limits(VARIABLE_TOLERANCE)
         result = nested_scvt(coarse.points, coarse.triangles, box, NESTED_CELLS, limits, seed=seed)
-        meshes.append(measured(start, request, "refined-box", result))
+        meshes.append(measured(start, request, result))
         tell(f"nested mesh from {start} {seed}: least q {meshes[-1].quality.q_min:.4f}")
     return meshes
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesh.build import mesh_from_points
+from mesh.build import mesh_of
 from mesh.density import NAMED
 from mesh.moments import mean_spacing
 from mesh.optimizer import History, Limits, ScvtResult
@@ -66,15 +66,15 @@ class Start:
         return int(np.count_nonzero(self.mesh.n_edges_on_cell == 5)) - 12
 
 
-def converge_from(request: Request, density_name: str, tolerance: float) -> Start:
+def converge_from(request: Request, tolerance: float) -> Start:
     """Converge one mesh and measure it."""
     result = generate_scvt(request, Limits(tolerance))
-    return measured(request.start or "icosahedral", request, density_name, result)
+    return measured(request.start or "icosahedral", request, result)
 
 
-def measured(start: str, request: Request, density_name: str, result: ScvtResult) -> Start:
+def measured(start: str, request: Request, result: ScvtResult) -> Start:
     """The mesh of a result with its quality."""
-    mesh = mesh_from_points(result.points, result.triangles, request.density, density_name)
+    mesh = mesh_of(result, request.density)
     return Start(start, request.seed, mesh, mesh_quality(mesh), result.history)
 
 
@@ -83,18 +83,18 @@ def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
     meshes = []
     for start, seed in STARTS:
         request = Request(CIRCLE_CELLS, start, density=NAMED["refined-circle"], seed=seed)
-        meshes.append(converge_from(request, "refined-circle", tolerance))
+        meshes.append(converge_from(request, tolerance))
         tell(f"refined-circle from {start} {seed}: {meshes[-1].history.iterations} iterations")
     return meshes
 
 
 def random_meshes(tolerance: float, tell: Tell) -> list[Start]:
     """Uniform meshes: the icosahedral one, those from it after a shake, and those from random points."""
-    meshes = [converge_from(Request(RANDOM_CELLS), "uniform", tolerance)]
+    meshes = [converge_from(Request(RANDOM_CELLS), tolerance)]
     for seed in SHAKEN_SEEDS:
         meshes.append(_shaken(meshes[0], seed, tolerance))
     for seed in RANDOM_SEEDS:
-        meshes.append(converge_from(Request(RANDOM_CELLS, "random", seed=seed), "uniform", tolerance))
+        meshes.append(converge_from(Request(RANDOM_CELLS, "random", seed=seed), tolerance))
     for mesh in meshes:
         tell(f"{RANDOM_CELLS} cells, {mesh.start} {mesh.seed}: {mesh.dislocations} dislocations")
     return meshes
@@ -105,8 +105,8 @@ def _shaken(start: Start, seed: int, tolerance: float) -> Start:
     points = start.mesh.cell_points
     step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
     request = Request(len(points), seed=seed)
-    result = optimize(normalize(points + step), None, request, Limits(tolerance))
-    return measured("icosahedral, shaken", request, "uniform", result)
+    result = optimize(normalize(points + step), limits=Limits(tolerance))
+    return measured("icosahedral, shaken", request, result)
 
 
 def optimizer_histories(tell: Tell) -> dict[str, History]:
@@ -120,7 +120,7 @@ def optimizer_histories(tell: Tell) -> dict[str, History]:
         if method == "multilevel":
             histories[method] = generate_scvt(request, limits).history
         else:
-            histories[method] = optimize(*starting_mesh(request), request, limits).history
+            histories[method] = optimize(*starting_mesh(request), method, limits=limits).history
         tell(f"{method}: residual {histories[method].residual[-1]:.1e} after {histories[method].iterations} iterations")
     return histories
 

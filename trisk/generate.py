@@ -1,14 +1,15 @@
 """`trisk mesh`: from options to a mesh file, with progress and checkpoints."""
 
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import typer
 
-from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh, write_mesh
-from mesh.arrays import Array, Index
+from mesh import MeshError, VoronoiMesh, read_mesh, write_mesh
+from mesh.build import mesh_of
 from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
 from mesh.density import Density
 from mesh.gridded_density import Shaping, find_density
@@ -57,52 +58,58 @@ def generate(options: MeshOptions, output: Path, history: str) -> VoronoiMesh:
     require_possible_file(output)
     if options.nested is not None and (options.start, options.method, options.resume) != (None, "lbfgs", False):
         raise MeshError("--start, --method and --resume do not go with --nested, which starts from that mesh")
+    begin = time.perf_counter()
     density = find_density(options.density, options.density_variable, options.shaping)
     with _progress(options, output) as callback:
+        limits = options.limits.since(begin)
         if options.nested is None:
-            result = _from_start(options, density, output, callback)
+            result = _from_start(options, density, limits, output, callback)
         else:
-            result = _nested(options.nested, options, density, callback)
-        points, triangles = result.points, result.triangles
+            result = _nested(options.nested, options, density, limits, callback)
         if options.well_centered:
-            points, triangles = _well_centered(result, density, options.quiet)
-        mesh = mesh_from_points(points, triangles, density, options.density)
+            result = _well_centered(result, density, options.limits.since(begin).seconds, options.quiet)
+        mesh = mesh_of(result, density)
         write_mesh(mesh, output, history)
     return mesh
 
 
-def _well_centered(result: ScvtResult, density: Density, quiet: bool) -> tuple[Array, Index]:
-    """Points and triangles without obtuse angles; tells the residual that they cost."""
-    better = well_center(result.points, result.triangles, density, result.fixed)
+def _well_centered(result: ScvtResult, density: Density, seconds: float, quiet: bool) -> ScvtResult:
+    """The result with triangles without obtuse angles; tells the residual that they cost."""
+    begin = time.perf_counter()
+    better = well_center(result.points, result.triangles, density, result.fixed, seconds=seconds)
     if better.least_quality < GOAL:
+        in_time = time.perf_counter() - begin < seconds
+        advice = "try another start or seed, or converge it further" if in_time else "allow more time"
         raise MeshError(
             f"the mesh of {len(better.points)} cells keeps a triangle of quality {better.least_quality:.3f}, below "
-            f"{GOAL}; try another start or seed, or converge it further"
+            f"{GOAL}; {advice}"
         )
     if not quiet:
         typer.echo(
             f"well-centred: the least triangle quality is {better.least_quality:.3f}, and the residual rose from "
             f"{better.residual_before:.1e} to {better.residual:.1e} mean spacings"
         )
-    return better.points, better.triangles
+    return replace(result, points=better.points, triangles=better.triangles)
 
 
-def _from_start(options: MeshOptions, density: Density, output: Path, callback: Callback) -> ScvtResult:
+def _from_start(options: MeshOptions, density: Density, limits: Limits, output: Path, callback: Callback) -> ScvtResult:
     if options.cells is None:
         raise MeshError("the number of cells is missing; give --cells N")
     request = Request(options.cells, options.start, options.method, density, options.seed)
     if not options.resume:
-        return generate_scvt(request, options.limits, callback)
+        return generate_scvt(request, limits, callback)
     points = load_checkpoint(checkpoint_path(output), options.description)
-    result = optimize(points, None, request, options.limits, callback)
-    check_converged(result, options.limits)
+    result = optimize(points, None, options.method, density, limits, callback, options.seed)
+    check_converged(result, limits)
     return result
 
 
-def _nested(coarse_file: Path, options: MeshOptions, density: Density, callback: Callback) -> ScvtResult:
+def _nested(
+    coarse_file: Path, options: MeshOptions, density: Density, limits: Limits, callback: Callback
+) -> ScvtResult:
     coarse = read_mesh(coarse_file)
     points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
-    return nested_scvt(points, triangles, density, options.cells, options.limits, callback, options.seed)
+    return nested_scvt(points, triangles, density, options.cells, limits, callback, options.seed)
 
 
 @contextmanager

@@ -3,6 +3,7 @@
 import errno
 import io
 import json
+import math
 import os
 import shlex
 import signal
@@ -86,24 +87,25 @@ def mesh(
     tolerance: Annotated[
         float | None,
         typer.Option(
-            "--tolerance", help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density."
+            "--tolerance",
+            help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density, and more for methods "
+            "that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
         ),
     ] = None,
     max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = 10_000,
-    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long.")] = float("inf"),
+    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long, all in all.")] = float(
+        "inf"
+    ),
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh.build import default_tolerance
+    from mesh.build import default_limits
     from mesh.gridded_density import Shaping
-    from mesh.optimizer import Limits
     from trisk.generate import MeshOptions, generate
     from trisk.report import print_quality
 
-    if tolerance is None:
-        tolerance = default_tolerance(density)
-    limits = Limits(tolerance, max_iterations, max_seconds)
+    limits = default_limits(density, method, tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
     options = MeshOptions(
         cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet
@@ -144,11 +146,16 @@ def quality(
             require_possible_folder(output)
         print_table1(max_level, output)
         return
-    from mesh import mesh_quality, read_mesh
+    from mesh import read_mesh
+    from mesh.quality import quality_and_note
 
     read = read_mesh(file, recompute_metrics)
     if as_json:
-        typer.echo(json.dumps(asdict(mesh_quality(read))))
+        found, note = quality_and_note(read)
+        measured = asdict(found)
+        if not math.isfinite(measured["residual"]):
+            measured["residual"] = None
+        typer.echo(json.dumps({**measured, "residual_note": note}))
     else:
         print_quality(read, str(file))
 

@@ -9,8 +9,9 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 from rich.table import Table
 
-from mesh import VoronoiMesh, mesh_quality
+from mesh import VoronoiMesh
 from mesh.optimizer import Callback, Iterate
+from mesh.quality import quality_and_note
 from swe.output import DIAGNOSTICS_FILE, load_record, read_series
 
 
@@ -43,7 +44,8 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
 
 def print_quality(mesh: VoronoiMesh, name: str) -> None:
     """Print the quality of `mesh` as a table."""
-    measured = mesh_quality(mesh)
+    measured, note = quality_and_note(mesh)
+    known = "unknown" if math.isnan(measured.residual) else f"{measured.residual:.2e} mean spacings"
     rows = [
         ("cells", str(measured.cells)),
         ("largest / smallest neighbour distance (mu)", f"{measured.mu:.6f}"),
@@ -51,7 +53,8 @@ def print_quality(mesh: VoronoiMesh, name: str) -> None:
         ("smallest of those (sigma_min)", f"{measured.sigma_min:.6f}"),
         ("mean triangle quality (q_avg)", f"{measured.q_avg:.6f}"),
         ("smallest triangle quality (q_min)", f"{measured.q_min:.6f}"),
-        ("distance to the centroids, at most (residual)", f"{measured.residual:.2e} mean spacings"),
+        ("distance to the centroids, at most (residual)", known),
+        *([("on the residual", note)] if note else []),
         ("obtuse triangles", str(measured.obtuse)),
         ("largest / smallest cell area", f"{measured.area_ratio:.6f}"),
     ]

@@ -1,11 +1,13 @@
+import json
 from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 
-from mesh import MeshError, mesh_from_points, mesh_quality, read_mesh, scvt_mesh, write_mesh
+from mesh import MeshError, MeshWarning, mesh_from_points, mesh_quality, read_mesh, scvt_mesh, write_mesh
 from mesh.density import NAMED, RefinedBox, RefinedCircle, SmoothTransition, uniform
+from mesh.density_record import source_of
 from mesh.generators import fibonacci_points, random_points
 from mesh.gridded_density import Shaping, find_density, read_density
 from mesh.moments import masses_and_moments
@@ -137,7 +139,7 @@ def test_refined_circle_converges_with_the_right_widths(start: str) -> None:
 def test_energy_never_rises_above_the_error_of_its_quadrature(method: str) -> None:
     limits = Limits(1e-4, iterations=300)
     request = Request(642, "random", method, NAMED["refined-circle"])
-    energy = np.array(optimize(*starting_mesh(request), request, limits).history.energy)
+    energy = np.array(optimize(*starting_mesh(request), method, request.density, limits).history.energy)
     assert np.all(energy <= (1.0 + RELATIVE_QUADRATURE_ERROR) * np.minimum.accumulate(energy))
     assert energy[-1] < 0.9 * energy[0]
     if method == "lloyd":
@@ -172,8 +174,9 @@ def write_grid(path: Path, values: np.ndarray, latitude: np.ndarray, longitude: 
     with netCDF4.Dataset(path, "w") as file:
         file.createDimension("lat", len(latitude))
         file.createDimension("lon", len(longitude))
-        file.createVariable("lat", "f8", ("lat",))[:] = latitude
-        file.createVariable("lon", "f8", ("lon",))[:] = longitude
+        for name, places, unit in (("lat", latitude, "degrees_north"), ("lon", longitude, "degrees_east")):
+            file.createVariable(name, "f8", (name,)).units = unit
+            file[name][:] = places
         file.createVariable("density", "f4", ("lat", "lon"))[:] = values
     return path
 
@@ -233,7 +236,7 @@ def test_missing_and_negative_values_of_a_file_are_refused(tmp_path: Path) -> No
     assert read_density(path, shaping=Shaping(floor=0.5))(at(180, 0))[0] == pytest.approx(0.5)
     with netCDF4.Dataset(path, "r+") as file:
         file["density"][0, 0] = np.ma.masked
-    with pytest.raises(MeshError, match="1 values of density are missing or not finite"):
+    with pytest.raises(MeshError, match="1 of 12 values of density are missing or not finite"):
         read_density(path, shaping=Shaping(floor=0.5))
 
 
@@ -241,7 +244,103 @@ def test_unusable_density_files_are_refused(tmp_path: Path) -> None:
     with pytest.raises(MeshError, match="there is no such file"):
         find_density(str(tmp_path / "absent.nc"))
     path = write_grid(tmp_path / "grid.nc", np.full((3, 4), np.nan), np.array([-60.0, 0.0, 60.0]), np.arange(4) * 90.0)
-    with pytest.raises(MeshError, match="12 values of density are missing or not finite"):
+    with pytest.raises(MeshError, match="12 of 12 values of density are missing or not finite"):
         read_density(path)
-    with pytest.raises(MeshError, match="no variable named depth"):
+    with pytest.raises(
+        MeshError, match="no variable named depth; name one of those that it has, which are lat, lon, density"
+    ):
         read_density(path, "depth")
+
+
+SHAPES = {
+    "list": lambda values: [float(value) for value in values],
+    "single precision": lambda values: values.astype(np.float32),
+    "column": lambda values: values[:, None],
+    "large": lambda values: 1e300 * values,
+    "small": lambda values: 1e-300 * values,
+}
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_functions_may_return_any_numbers_of_any_size(name: str) -> None:
+    """Only ratios of a density count, so that the mesh is the same."""
+    density, given = NAMED["smooth-transition"], SHAPES[name]
+    expected = scvt_mesh(162, density, tolerance=1e-5)
+    found = scvt_mesh(162, lambda points: given(density(points)), tolerance=1e-5)
+    np.testing.assert_allclose(found.cell_points, expected.cell_points, atol=1e-4)
+    np.testing.assert_allclose(found.mesh_density, np.ravel(given(density(found.cell_points))), rtol=1e-6)
+
+
+@pytest.mark.parametrize("factor", [0.25, 2.0**600, 2.0**-900])
+def test_powers_of_four_change_no_digit(factor: float) -> None:
+    density = NAMED["refined-circle"]
+    meshes = [scvt_mesh(100, lambda points, f=f: f * density(points), "random", tolerance=1e-4) for f in (1.0, factor)]
+    np.testing.assert_array_equal(meshes[1].cell_points, meshes[0].cell_points)
+
+
+@pytest.mark.parametrize(
+    ("density", "words"),
+    [
+        (lambda points: np.ones(3), r"gives values of shape \(3,\) at 20000 points; return one per point"),
+        (lambda points: None, "gives NoneType instead of real numbers"),
+        (lambda points: "dense", "gives str instead of real numbers"),
+        (lambda points: [[1.0], [1.0, 2.0]], "gives list instead of real numbers"),
+        (lambda points: points[:, 0] + 2j, "gives ndarray instead of real numbers"),
+        (lambda points: 0.0, "density is zero everywhere it was tried"),
+        (lambda points: np.exp(60.0 * points[:, 2]), "draws 200 generators to one hemisphere; ask for more cells"),
+    ],
+)
+def test_functions_that_give_no_density_are_refused(density, words: str) -> None:
+    with pytest.raises(MeshError, match=words):
+        scvt_mesh(200, density=density)
+
+
+def test_extreme_ratio_converges() -> None:
+    """Widths from 1 to 100."""
+    mesh = scvt_mesh(2562, lambda points: 1e8 ** (0.5 + 0.5 * points[:, 2]), "random-root", tolerance=1e-4)
+    assert mesh.area_cell.max() / mesh.area_cell.min() > 500.0
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e200])
+def test_scale_of_widths_does_not_count(scale: float, tmp_path: Path) -> None:
+    latitude, longitude = np.arange(-90.0, 91.0, 10.0), np.arange(0.0, 360.0, 10.0)
+    width = np.repeat(1.0 + 0.01 * (latitude + 90.0), 36).reshape(19, 36)
+    path = write_grid(tmp_path / "grid.nc", np.ones((19, 36)), latitude, longitude)
+    with netCDF4.Dataset(path, "r+") as file:
+        file.createVariable("width", "f8", ("lat", "lon"))[:] = scale * width
+    density = read_density(path, "width", Shaping(power=-4.0, smoothing=1))
+    south, north = (density(at(0, latitude))[0] for latitude in (-40, 40))
+    assert 0.0 < south < np.inf
+    assert north / south == pytest.approx((1.5 / 2.3) ** 4, rel=1e-9)
+
+
+def test_end_by_kinks_is_accepted_where_no_tolerance_is_asked_for() -> None:
+    """A density that jumps is never converged to the default tolerance."""
+
+    def jump(points: np.ndarray) -> np.ndarray:
+        return np.where(points[:, 2] > 0.3, 1.0 + 1e-3 * points[:, 0] ** 2, 1.0)
+
+    with pytest.warns(MeshWarning, match="taken as converged at a centroid residual of .*; kinks of the density"):
+        mesh = scvt_mesh(100, jump)
+    assert 1e-6 < mesh_quality(mesh, jump).residual <= 1e-4
+    with pytest.raises(MeshError, match="the density jumps or changes much within a cell"):
+        scvt_mesh(100, jump, tolerance=1e-6)
+
+
+def test_arguments_may_be_numbers_of_numpy_and_paths(tmp_path: Path) -> None:
+    latitude, longitude = np.arange(-90.0, 91.0, 30.0), np.arange(0.0, 360.0, 30.0)
+    path = write_grid(tmp_path / "grid.nc", np.ones((7, 12)), latitude, longitude)
+    plain = scvt_mesh(100, str(path), "random", tolerance=1e-3, max_iterations=500, seed=3)
+    mesh = scvt_mesh(
+        np.int32(100), path, "random", tolerance=np.float64(1e-3), max_iterations=np.int16(500), seed=np.uint8(3)
+    )
+    np.testing.assert_array_equal(mesh.cell_points, plain.cell_points)
+    density = read_density(path, shaping=Shaping(np.float32(0.5), np.float32(1.0), np.int64(1)))
+    assert json.loads(source_of(density)) == {
+        "path": str(path),
+        "variable": "density",
+        "floor": 0.5,
+        "power": 1.0,
+        "smoothing": 1,
+        "sha256": density.digest,
+    }

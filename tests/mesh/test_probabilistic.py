@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from mesh import MeshError
+from mesh import MeshError, mesh_quality, scvt_mesh
+from mesh.build import default_tolerance
 from mesh.density import NAMED, uniform
 from mesh.optimizer import Limits
 from mesh.probabilistic import MACQUEEN, Weights, probabilistic_lloyd
@@ -39,6 +40,21 @@ def test_macqueen_makes_generators_the_means_of_their_samples() -> None:
         expected[k] = normalize((counts[k] * expected[k] + sample) / (counts[k] + 1.0))
         counts[k] += 1.0
     np.testing.assert_allclose(sweep.points, expected, atol=1e-14)
+
+
+def test_steps_shrink_until_the_tolerance_is_reached() -> None:
+    """Steps of one size leave a residual of 0.05 to 0.08, the error of so few samples."""
+    result = probabilistic_lloyd(start(100), uniform, Weights(2000), 0, Limits(0.02, 5000))
+    assert result.reason == "tolerance"
+    assert min(result.history.residual[:40]) > 0.04
+
+
+@pytest.mark.parametrize("method", ["probabilistic", "macqueen"])
+@pytest.mark.parametrize("density", ["uniform", "smooth-transition"])
+def test_default_tolerance_is_reached(method: str, density: str) -> None:
+    mesh = scvt_mesh(100, density, "random", method, max_iterations=3000)
+    assert mesh_quality(mesh).residual <= default_tolerance(density, method)
+    assert default_tolerance(density, method) <= 0.5
 
 
 def test_density_attracts_generators() -> None:

@@ -1,12 +1,21 @@
+from collections.abc import Iterator
+from itertools import count
+from types import SimpleNamespace
+
 import numba
 import numpy as np
 import pytest
 from plain_moments import mass_and_moment
 
+import mesh.nested
+import mesh.optimizer
+import mesh.scvt
 from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.delaunay import delaunay
+from mesh.density import RefinedBox
 from mesh.generators import fibonacci_points
 from mesh.moments import masses_and_moments
+from mesh.nested import nested_scvt
 from mesh.optimizer import Iterate, Limits, ScvtResult
 from mesh.scvt import Request, generate_scvt, optimize
 from mesh.sphere import arc_length, dot, normalize
@@ -72,7 +81,7 @@ def residual_of(result: ScvtResult) -> float:
 @pytest.mark.parametrize("start", ["fibonacci", "random"])
 def test_energy_never_rises_and_the_residual_is_reached(method: str, start: str) -> None:
     points = fibonacci_points(200) if start == "fibonacci" else random_points(200, 9)
-    result = optimize(points, request=Request(200, method=method), limits=Limits(1e-6))
+    result = optimize(points, method=method, limits=Limits(1e-6))
     energy = np.array(result.history.energy)
     assert np.all(np.diff(energy) <= 1e-13 * energy[0])
     assert energy[-1] < energy[0]
@@ -94,7 +103,7 @@ def test_all_methods_find_the_same_mesh_and_lbfgs_sooner() -> None:
 
 def test_lloyd_steps_to_the_centroids() -> None:
     points = fibonacci_points(100)
-    result = optimize(points, request=Request(100, method="lloyd"), limits=Limits(iterations=1))
+    result = optimize(points, method="lloyd", limits=Limits(iterations=1))
     _, moment = mass_and_moment(points, delaunay(points))
     np.testing.assert_allclose(result.points, normalize(moment), atol=1e-13)
 
@@ -173,3 +182,38 @@ def test_unreachable_tolerance_and_wrong_requests_are_refused() -> None:
         generate_scvt(Request(100, method="newton"))
     with pytest.raises(MeshError, match="multilevel method bisects the icosahedron, which gives no mesh of 100 cells"):
         generate_scvt(Request(100, method="multilevel"))
+
+
+@pytest.fixture
+def seconds(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
+    """A clock that goes on by one second whenever somebody looks."""
+    clock = count()
+    ticking = SimpleNamespace(perf_counter=lambda: float(next(clock)))
+    for module in (mesh.optimizer, mesh.scvt, mesh.nested):
+        monkeypatch.setattr(module, "time", ticking)
+    return clock
+
+
+def test_seconds_are_for_all_levels_together(seconds: Iterator[int]) -> None:
+    """Each of the three levels would take 60 seconds."""
+    with pytest.raises(MeshError, match="allow more time"):
+        generate_scvt(Request(10242, method="multilevel"), Limits(1e-18, seconds=60.0))
+    assert 60 <= next(seconds) <= 75
+
+
+def test_seconds_are_for_all_reseedings_together(seconds: Iterator[int]) -> None:
+    """Each of the eight begins with iterate 0; with little more time than the first descent took, the second ends."""
+    coarse = generate_scvt(Request(162))
+    numbers: list[int] = []
+
+    def refine(limits: Limits) -> int:
+        begin = next(seconds)
+        numbers.clear()
+        nested_scvt(coarse.points, coarse.triangles, RefinedBox(), None, limits, lambda it: numbers.append(it.number))
+        return next(seconds) - begin
+
+    refine(Limits(1e-3))
+    assert numbers.count(0) == 9
+    first = numbers.index(0, 1)
+    assert refine(Limits(1e-3, seconds=first + 10.0)) <= first + 20
+    assert numbers.count(0) == 2

@@ -76,9 +76,16 @@ def test_reseeding_never_makes_the_mesh_worse() -> None:
     fixed = np.zeros(300, bool)
 
     def converge(points: np.ndarray) -> ScvtResult:
-        return optimize(points, request=Request(300), limits=Limits(1e-5))
+        return optimize(points, limits=Limits(1e-5))
 
     better = reseed(start, converge, wanted=0.95, tries=4, seed=0, fixed=fixed)
     lacking = [np.maximum(0, 0.95 - qualities(r.points, r.triangles)).sum() for r in (start, better)]
     assert lacking[1] < lacking[0]
     assert better.history.residual[-1] <= 1e-5
+
+
+def test_no_round_begins_without_time(circle: ScvtResult) -> None:
+    late = well_center(circle.points, circle.triangles, CIRCLE, seconds=0.0)
+    assert late.least_quality < GOAL
+    assert late.residual == late.residual_before
+    np.testing.assert_array_equal(late.points, circle.points)

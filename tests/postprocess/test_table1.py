@@ -43,7 +43,7 @@ def test_levels_beyond_the_table_are_refused() -> None:
 @pytest.fixture(scope="module")
 def meshes() -> list[Start]:
     density = NAMED["refined-circle"]
-    return [converge_from(Request(300, "random", density=density, seed=k), "refined-circle", 1e-4) for k in (0, 1)]
+    return [converge_from(Request(300, "random", density=density, seed=k), 1e-4) for k in (0, 1)]
 
 
 def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> None:

@@ -38,10 +38,12 @@ def exercise() -> dict[str, np.ndarray]:
     from cases import Williamson1, Williamson5
     from mesh import mesh_from_points, mesh_quality, multilevel, scvt_mesh
     from mesh.density import uniform
+    from mesh.generators import fibonacci_points
     from mesh.gridded_density import find_density
     from mesh.nested import nested_scvt
     from mesh.operators import velocity_at_cells
     from mesh.optimizer import Limits
+    from mesh.scattered_density import density_from_cells
     from mesh.topology import FILL
     from mesh.validate import validate_mesh
     from mesh.voronoi_mesh import TOPOLOGY_NAMES
@@ -63,12 +65,14 @@ def exercise() -> dict[str, np.ndarray]:
         "multilevel": scvt_mesh(162, method="multilevel", tolerance=1e-3),
         "nested": mesh_from_points(nested.points, nested.triangles),
         "lloyd": scvt_mesh(32, start="fibonacci", method="lloyd", tolerance=5e-2),
-        "macqueen": scvt_mesh(32, start="random", method="macqueen", tolerance=1.0),
+        "macqueen": scvt_mesh(32, start="random", method="macqueen", tolerance=0.3),
         "density": scvt_mesh(40, density="smooth-transition", start="fibonacci", tolerance=1e-2),
     }
     others["well-centred"] = mesh_from_points(
         well_center(others["lloyd"].cell_points, others["lloyd"].cells_on_vertex, uniform).points
     )
+    interpolate = density_from_cells(irregular.cell_points, random.random(60), irregular.cells_on_vertex)
+    found["interpolation between cells"] = interpolate(fibonacci_points(50))
     for name, mesh in {"regular": regular, "irregular": irregular, **others}.items():
         validate_mesh(mesh)
         found[f"quality of {name}"] = np.array(list(vars(mesh_quality(mesh)).values()), float)

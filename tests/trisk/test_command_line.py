@@ -1,6 +1,7 @@
 """The command line: what it prints, what it writes, and how it refuses."""
 
 import json
+import re
 import shlex
 import subprocess
 import sys
@@ -223,7 +224,50 @@ def test_meshes_under_a_density(trisk, mesh_file: Path, tmp_path: Path) -> None:
     assert json.loads(trisk("quality", output, "--json")[1])["obtuse"] == 0
     code, _, err = trisk("mesh", "--nested", mesh_file, "--density", "refined-box", "-o", output, "-q")
     assert (code, err) == (0, "")
-    assert json.loads(trisk("quality", output, "--json")[1])["cells"] > 250
+    measured = json.loads(trisk("quality", output, "--json")[1])
+    assert measured["cells"] > 250
+    assert measured["residual"] <= 1e-6
+    assert re.fullmatch(r"\d+ generators that were held are not counted", measured["residual_note"])
+    assert "on the residual" in trisk("quality", output)[1]
+
+
+def test_mesh_under_a_density_from_a_file(trisk, tmp_path: Path) -> None:
+    """The file tells of the density as long as that is there."""
+    field, output = tmp_path / "field.nc4", tmp_path / "mesh.nc"
+    latitude, longitude = np.arange(-90.0, 91.0, 10.0), np.arange(0.0, 360.0, 10.0)
+    with netCDF4.Dataset(field, "w") as file:
+        for name, values, unit in (("lat", latitude, "degrees_north"), ("lon", longitude, "degrees_east")):
+            file.createDimension(name, len(values))
+            file.createVariable(name, "f8", (name,)).units = unit
+            file[name][:] = values
+        file.createVariable("width", "f8", ("lat", "lon"))[:] = np.repeat(120.0 + latitude[:, None] / 3.0, 36, axis=1)
+    options = ("--density", field, "--density-variable", "width", "--density-power", -4)
+    code, _, err = trisk("mesh", "--cells", 300, *options, "--tolerance", 1e-4, "-o", output, "-q")
+    assert (code, err) == (0, "")
+    measured = json.loads(trisk("quality", output, "--json")[1])
+    assert measured["residual"] <= 1e-4
+    assert measured["residual_note"] == ""
+    field.unlink()
+    measured = json.loads(trisk("quality", output, "--json")[1])
+    assert measured["residual"] is None
+    assert measured["residual_note"].endswith("field.nc4, which is not there or has changed since")
+    assert "unknown" in trisk("quality", output)[1]
+
+
+@pytest.mark.parametrize("method", ["probabilistic", "macqueen"])
+def test_sampling_methods_end_well(trisk, method: str, tmp_path: Path) -> None:
+    output = tmp_path / "mesh.nc"
+    assert trisk("mesh", "--method", method, "--cells", 642, "-o", output, "-q")[0] == 0
+    assert json.loads(trisk("quality", output, "--json")[1])["residual"] < 0.1
+
+
+def test_seconds_are_for_the_whole_call(trisk, tmp_path: Path) -> None:
+    """None are left for centring well once the mesh is converged."""
+    options = ("--cells", 162, "--start", "random", "--tolerance", 10, "--well-centred", "--max-seconds", 0)
+    code, _, err = trisk("mesh", *options, "-o", tmp_path / "mesh.nc", "-q")
+    assert code == 2
+    assert "keeps a triangle of quality" in err
+    assert err.strip().splitlines()[-1].endswith("allow more time")
 
 
 def test_wrong_use_is_code_2(trisk, tmp_path: Path) -> None:
