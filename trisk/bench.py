@@ -20,24 +20,26 @@ TOLERANCE = 1e-2
 """Residual of the meshes made for timing: the cost of a step hardly depends on it, that of the mesh does."""
 
 
-def timings(mesh_file: Path | None, cells: Sequence[int], show: bool) -> list[Timing]:
+def timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool, show: bool) -> list[Timing]:
     """Timings of test case 5 on the mesh of a file or on meshes of so many cells, told one by one if `show`."""
     if mesh_file is not None and cells:
         raise typer.BadParameter("give either --mesh FILE or --cells N")
+    if recompute_metrics and mesh_file is None:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     for number in cells:
         if number < MINIMUM_CELLS:
             raise typer.BadParameter(f"{number} cells make no mesh; give at least {MINIMUM_CELLS}")
     results = []
-    for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS):
+    for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS, recompute_metrics):
         if show:
             typer.echo(f"timing {mesh.n_cells} cells", err=True)
         results.append(measure(Simulation(mesh, find_case(CASE))))
     return results
 
 
-def _meshes(mesh_file: Path | None, cells: Sequence[int]) -> Iterator[VoronoiMesh]:
+def _meshes(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool) -> Iterator[VoronoiMesh]:
     if mesh_file is not None:
-        yield read_mesh(mesh_file)
+        yield read_mesh(mesh_file, recompute_metrics)
         return
     for number in cells:
         yield scvt_mesh(number, tolerance=TOLERANCE)

@@ -13,6 +13,7 @@ from mesh.build import mesh_of
 from mesh.checkpoint import CheckpointKeeper, checkpoint_path, load_checkpoint
 from mesh.density import Density
 from mesh.gridded_density import Shaping, find_density
+from mesh.io import require_format
 from mesh.nested import nested_scvt
 from mesh.optimizer import Callback, Iterate, Limits, ScvtResult
 from mesh.scvt import Request, check_converged, generate_scvt, optimize
@@ -53,8 +54,9 @@ class MeshOptions:
         }
 
 
-def generate(options: MeshOptions, output: Path, history: str) -> VoronoiMesh:
+def generate(options: MeshOptions, output: Path, history: str, file_format: str) -> VoronoiMesh:
     """Write the mesh that the options ask for; a generation that fails or is interrupted leaves a checkpoint."""
+    require_format(file_format)
     require_possible_file(output)
     if options.nested is not None and (options.start, options.method, options.resume) != (None, "lbfgs", False):
         raise MeshError("--start, --method and --resume do not go with --nested, which starts from that mesh")
@@ -69,7 +71,7 @@ def generate(options: MeshOptions, output: Path, history: str) -> VoronoiMesh:
         if options.well_centered:
             result = _well_centered(result, density, options.limits.since(begin).seconds, options.quiet)
         mesh = mesh_of(result, density)
-        write_mesh(mesh, output, history)
+        write_mesh(mesh, output, history, file_format)
     return mesh
 
 
@@ -107,7 +109,7 @@ def _from_start(options: MeshOptions, density: Density, limits: Limits, output: 
 def _nested(
     coarse_file: Path, options: MeshOptions, density: Density, limits: Limits, callback: Callback
 ) -> ScvtResult:
-    coarse = read_mesh(coarse_file)
+    coarse = read_mesh(coarse_file, recompute_metrics=True)  # as generators and triangles alone serve
     points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
     return nested_scvt(points, triangles, density, options.cells, limits, callback, options.seed)
 

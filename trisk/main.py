@@ -17,7 +17,7 @@ from typing import Annotated, Any, Literal
 import typer
 
 from trisk import study
-from trisk.options import CaseName, Quiet, Settings
+from trisk.options import CaseName, Quiet, Recompute, Settings
 
 app = typer.Typer(
     help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
@@ -40,11 +40,6 @@ ERRORS_OF_OUTPUT = (errno.ENOSPC, errno.EPIPE, errno.EIO, errno.EFBIG, errno.EDQ
 
 RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
 """Exit codes; the last is that of shells, to which the number of the signal is added."""
-
-Recompute = Annotated[
-    bool,
-    typer.Option("--recompute-metrics", help="Rebuild lengths, areas and weights of the file from its generators."),
-]
 
 
 @app.command()
@@ -97,6 +92,10 @@ def mesh(
         "inf"
     ),
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
+    file_format: Annotated[
+        str,
+        typer.Option("--format", help="netcdf4, or for programs without HDF5: cdf5, or classic, with 64-bit offsets."),
+    ] = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
@@ -110,7 +109,7 @@ def mesh(
     options = MeshOptions(
         cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet
     )
-    result = generate(options, output, history=_command_line())
+    result = generate(options, output, _command_line(), file_format)
     if not quiet:
         print_quality(result, str(output))
 
@@ -388,6 +387,7 @@ def bench(
         typer.Option("--cells", metavar="N", help="Number of cells, repeatable; by default 10242 and 40962."),
     ] = None,
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time on this mesh instead.")] = None,
+    recompute_metrics: Recompute = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
 ) -> None:
@@ -397,7 +397,7 @@ def bench(
     """
     from trisk.bench import print_timings, timings
 
-    results = timings(mesh_file, cells or (), show=not quiet)
+    results = timings(mesh_file, cells or (), recompute_metrics, show=not quiet)
     if as_json:
         typer.echo(json.dumps([asdict(timing) for timing in results]))
     else:

@@ -15,3 +15,7 @@ Settings = Annotated[
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case, as angle=pi/2; repeatable."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
+Recompute = Annotated[
+    bool,
+    typer.Option("--recompute-metrics", help="Rebuild lengths, areas and weights of the file from its generators."),
+]

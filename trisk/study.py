@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from trisk.options import CaseName, Quiet, Settings
+from trisk.options import CaseName, Quiet, Recompute, Settings
 
 app = typer.Typer(help="Study how meshes or time steps become errors. An interrupted study goes on.")
 
@@ -66,6 +66,7 @@ def time(
     cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
     days: Annotated[float | None, typer.Option("--days", help="Simulated days; by default those of the paper.")] = None,
     settings: Settings = None,
+    recompute_metrics: Recompute = False,
     quiet: Quiet = False,
 ) -> None:
     """Run a case with several time steps.
@@ -79,7 +80,7 @@ def time(
     from trisk.meshes import chosen_mesh
 
     chosen = find_case(case, split_settings(settings or ()))
-    used = chosen_mesh(mesh_file, cells, recompute_metrics=False, quiet=quiet)
+    used = chosen_mesh(mesh_file, cells, recompute_metrics, quiet)
     plan = TimePlan(output, chosen, used, chosen.recommended_days if days is None else days, tuple(time_steps))
     tell = _teller(quiet)
     rows = carry_out(plan, not quiet, tell)

@@ -202,7 +202,8 @@ def test_what_no_step_depends_on_is_replaced(mesh_file: Path) -> None:
     words = (
         r"mesh\.nc: meshDensity is not finite everywhere and taken to be 1; replaced boundaryVertex \(a closed "
         r"sphere has none\), xEdge, yEdge or zEdge \(differed by up to 6\.4e-03 of the local size\), latVertex "
-        r"\(differed by up to \d\.\de-01 rad\), angleEdge \(differed by up to 4\.0e-01 rad\) by what the generators give$"
+        r"\(differed by up to \d\.\de-01 rad\), angleEdge \(differed by up to 4\.0e-01 rad\) by what the generators "
+        r"give$"
     )
     assert_same_arrays(warned_of(mesh_file, words), original, 1e-15)
 

@@ -135,18 +135,18 @@ def damaged(path: Path, kind: str) -> None:
         path.write_bytes(content[: len(content) // 2])
         return
     with netCDF4.Dataset(path, "r+") as file:
-        if kind == "swapped orientation":
-            file["cellsOnVertex"][3, :] = file["cellsOnVertex"][3, ::-1]
+        if kind == "swapped corners":
+            file["cellsOnVertex"][[3, 40], 0] = file["cellsOnVertex"][[40, 3], 0]
         elif kind == "not a number":
             file["yCell"][5] = np.nan
         elif kind == "missing variable":
-            file.renameVariable("dvEdge", "dvEdges")
+            file.renameVariable("cellsOnVertex", "cornersOnVertex")
         elif kind == "wrong count":
             file["nEdgesOnCell"][7] = 4
 
 
 @pytest.mark.parametrize(
-    "kind", ["truncated", "swapped orientation", "not a number", "missing variable", "wrong count"]
+    "kind", ["truncated", "swapped corners", "not a number", "missing variable", "wrong count"]
 )
 def test_damaged_mesh_is_refused_and_nothing_written(trisk, mesh_file: Path, tmp_path: Path, kind: str) -> None:
     damaged(mesh_file, kind)

@@ -1,0 +1,35 @@
+"""Some legal variants of mesh files; `python tests/reliability/legal_variants.py 300` makes as many as one likes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from legal_variants import CHANGES, Variant, originals, outcomes
+
+from mesh import read_mesh, write_mesh
+from mesh.conventions import MESH_VARIABLES
+
+
+def test_legal_variants_give_the_same_run() -> None:
+    found = outcomes(60, seed=1)
+    assert not [words for words in found if words.startswith("WRONG")]
+    assert found["the same run"] > 40
+    assert found["says what is missing"] > 0
+
+
+@pytest.mark.parametrize("change", CHANGES[:6], ids=lambda change: change.__name__)
+@pytest.mark.parametrize("which", range(3))
+@pytest.mark.filterwarnings("ignore::mesh.MeshWarning")
+def test_the_order_in_a_file_changes_no_bit(tmp_path: Path, change, which: int) -> None:
+    """All arrays are those of the original, but for where the rings of cells start."""
+    original = originals()[which]
+    write_mesh(original, tmp_path / "mesh.nc")
+    variant = Variant(tmp_path / "mesh.nc")
+    change(variant, np.random.default_rng(3))
+    (tmp_path / "mesh.nc").unlink()
+    variant.write(tmp_path / "mesh.nc")
+    mesh = read_mesh(tmp_path / "mesh.nc")
+    if change.__name__ == "rotate_rings":
+        return
+    for variable in MESH_VARIABLES:
+        np.testing.assert_array_equal(getattr(mesh, variable.name), getattr(original, variable.name), variable.name)
