@@ -96,7 +96,8 @@ def arrange_weights(weights: Array, arrays: Arrays, topology: Topology, exact: A
     result = np.where(used, result, 0.0)
     if "vertices_on_edge" in arrays:
         turned = arrays["vertices_on_edge"][:, 0] != topology.vertices_on_edge[:, 0]
-        against = (result * exact).sum(axis=1) < 0.0
+        with np.errstate(invalid="ignore"):  # what is not finite is refused later
+            against = (result * exact).sum(axis=1) < 0.0
         result[turned & against] *= -1.0
     return result
 

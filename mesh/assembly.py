@@ -17,6 +17,9 @@ from mesh.validate import OUTSIDE_TOLERANCE, check_values, require_on_sphere, re
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
 GENERATORS = ("x_cell", "y_cell", "z_cell")
+ROUNDING_GROWTH = 20.0
+"""How many times larger than the rounding of generators the displacement of a circumcentre may be."""
+
 MOST_LISTED = 6
 """Arrays that a warning names."""
 
@@ -67,10 +70,12 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     rebuilt = unit.scaled(radius)
     if recompute_metrics:
         return rebuilt, changes
+    metrics = _metrics_of_file(arrays, topology, exact)
     if content.single_precision:
+        _require_metrics_but_for_rounding(replace(rebuilt, **metrics), exact)  # type: ignore[arg-type]
         changes.said.append("coordinates are in single precision, so that all metrics are taken from them")
         return rebuilt, changes
-    return _with_metrics_of_file(rebuilt, exact, _metrics_of_file(arrays, topology, exact), changes), changes
+    return _with_metrics_of_file(rebuilt, exact, metrics, changes), changes
 
 
 def _generators(arrays: dict[str, NDArray], attribute: object, changes: Changes) -> tuple[Array, float]:
@@ -121,7 +126,7 @@ def _radius_of(points: Array, distance: Array, attribute: object, changes: Chang
         raise MeshError("xCell, yCell and zCell are zero; a mesh file must have its generators")
     require_on_sphere(points, radius, "cells")
     # Rounding of the coordinates is no radius of its own.
-    radius = 1.0 if abs(radius - 1.0) <= OUTSIDE_TOLERANCE else radius
+    radius = 1.0 if abs(radius - 1.0) <= OUTSIDE_TOLERANCE else float(f"{radius:.10g}")
     stated = "missing" if attribute is None else str(attribute)
     changes.said.append(
         f"the attribute sphere_radius is {stated}, but the coordinates lie at {radius:.10g}, which counts"
@@ -185,6 +190,14 @@ def _metrics_of_file(arrays: dict[str, NDArray], topology: Topology, exact: Metr
         if longitude is not None and not np.all((longitude >= 0.0) & (longitude < 2.0 * np.pi)):
             metrics[f"lon_{place}"] = longitude % (2.0 * np.pi)
     return metrics
+
+
+def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None:
+    """Raise `MeshError` where metrics differ by more than the rounding of coordinates to single precision explains."""
+    rounding = ROUNDING_GROWTH * float(np.finfo(np.float32).eps) / float(exact.dc_edge.min())
+    for difference in metric_differences(mesh, exact):
+        if not SPARE.issuperset(difference.names):
+            require_small(difference, OUTSIDE_TOLERANCE + rounding)
 
 
 def _with_metrics_of_file(

@@ -55,7 +55,7 @@ def read_content(file: netCDF4.Dataset) -> FileContent:
         arrays=arrays,
         radius=getattr(file, "sphere_radius", None),
         n_cells=len(file.dimensions["nCells"]) if "nCells" in file.dimensions else 0,
-        single_precision=any(source.dtype.itemsize < np.dtype(np.float64).itemsize for source in sources),
+        single_precision=any(source.dtype == np.float32 for source in sources),
     )
 
 

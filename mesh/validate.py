@@ -60,10 +60,10 @@ def validate_metrics(mesh: VoronoiMesh, exact: Metrics | None, tolerance: float)
     return residuals
 
 
-def require_small(difference: Difference) -> None:
-    """Raise `MeshError` where metrics differ from what the generators give by more than `OUTSIDE_TOLERANCE`."""
+def require_small(difference: Difference, tolerance: float = OUTSIDE_TOLERANCE) -> None:
+    """Raise `MeshError` where metrics differ from what the generators give by more than `tolerance`."""
     require(
-        difference.relative <= OUTSIDE_TOLERANCE,
+        difference.relative <= tolerance,
         difference.place,
         f"{difference.label} differs from what the generators give by up to {difference.in_words}; {REBUILD}",
     )

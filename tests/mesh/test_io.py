@@ -8,6 +8,7 @@ import pytest
 
 from mesh import MeshError, MeshWarning, VoronoiMesh, read_mesh, write_mesh
 from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES
+from mesh.identities import identity_residuals
 from mesh.io import mesh_hash
 
 
@@ -206,6 +207,36 @@ def test_what_no_step_depends_on_is_replaced(mesh_file: Path) -> None:
         r"give$"
     )
     assert_same_arrays(warned_of(mesh_file, words), original, 1e-15)
+
+
+def in_single_precision(source: Path, target: Path) -> Path:
+    with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w") as new:
+        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, len(dimension))
+        for name, variable in old.variables.items():
+            kind = "f4" if variable.dtype.kind == "f" else variable.dtype
+            new.createVariable(name, kind, variable.dimensions)[:] = variable[:]
+    return target
+
+
+def test_single_precision_is_taken_at_its_generators(mesh_file: Path, tmp_path: Path) -> None:
+    single = in_single_precision(mesh_file, tmp_path / "single.nc")
+    mesh = warned_of(single, "single.nc: coordinates are in single precision, so that all metrics are taken from them$")
+    original = read_mesh(mesh_file)
+    np.testing.assert_allclose(mesh.area_cell, original.area_cell, rtol=1e-5)
+    assert np.abs(mesh.area_cell / original.area_cell - 1.0).max() > 1e-8
+    assert max(identity_residuals(mesh).values()) < 1e-11
+
+
+def test_a_damaged_generator_in_single_precision_is_refused(mesh_file: Path, tmp_path: Path) -> None:
+    single = in_single_precision(mesh_file, tmp_path / "single.nc")
+    x = np.abs(read_mesh(mesh_file).x_cell)
+    cell = int(np.argmin(np.where(x > 1e-3, x, 1.0)))
+    with netCDF4.Dataset(single, "r+") as file:
+        file["xCell"][cell] *= -1.0
+    with pytest.raises(MeshError, match=r"differs from what the generators give|lie against its tangent|clockwise"):
+        read_mesh(single)
 
 
 def test_longitudes_may_count_from_minus_180_and_in_degrees(mesh_file: Path) -> None:

@@ -145,9 +145,7 @@ def damaged(path: Path, kind: str) -> None:
             file["nEdgesOnCell"][7] = 4
 
 
-@pytest.mark.parametrize(
-    "kind", ["truncated", "swapped corners", "not a number", "missing variable", "wrong count"]
-)
+@pytest.mark.parametrize("kind", ["truncated", "swapped corners", "not a number", "missing variable", "wrong count"])
 def test_damaged_mesh_is_refused_and_nothing_written(trisk, mesh_file: Path, tmp_path: Path, kind: str) -> None:
     damaged(mesh_file, kind)
     before = set(tmp_path.rglob("*"))
