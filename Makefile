@@ -6,9 +6,11 @@ CELLS := 40962
 RUN := runs/tc5
 STUDY := runs/verification
 GALEWSKY_CELLS := 2562 10242 40962 163842
+MUTANTS := 200
+SEED := 1
 
 .SECONDARY:
-.PHONY: tc5 test lint format wheel-test verification reliability references clean
+.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -18,8 +20,14 @@ runs/mesh.%.nc: | $(VENV)/installed
 	mkdir -p runs
 	$(BIN)/trisk mesh --cells $* -o $@
 
-test: $(VENV)/installed-dev  ## The test suite
-	$(BIN)/python -m pytest
+test: $(VENV)/installed-dev  ## The quick tests, in some minutes
+	$(BIN)/python -m pytest -m "not slow" -n 2
+
+test-all: test  ## The slow tests too
+	$(BIN)/python -m pytest -m slow -n 2
+
+mutants: $(VENV)/installed-dev  ## How many small faults the quick tests notice; hours, and goes on where it stopped
+	$(BIN)/python tests/mutation/mutants.py runs/mutants --count $(MUTANTS) --seed $(SEED)
 
 lint: $(VENV)/installed-dev
 	$(BIN)/ruff check .

@@ -77,13 +77,17 @@ class Comparison:
 
 
 def compare(directories: Sequence[Path], reference: str = "auto", days: Sequence[float] = ()) -> Comparison:
-    """Compare the runs in `directories` on `days`, by default on the last that all and the reference have.
+    """Compare the runs in `directories`; see `compare_runs`."""
+    return compare_runs([read_run(directory) for directory in directories], reference, days)
+
+
+def compare_runs(runs: Sequence[Run], reference: str = "auto", days: Sequence[float] = ()) -> Comparison:
+    """Compare runs on `days`, by default on the last that all and the reference have.
 
     `reference` is "auto", "exact", a reference file or a run directory: see `postprocess.solutions.choose_solution`.
     Raises `SetupError` where the runs are not of one case, one radius and the same parameters, where a day is missing
     or where there is nothing to compare with.
     """
-    runs = [read_run(directory) for directory in directories]
     for run in runs[1:]:
         _require_same_radius(run, runs[0])
         require_same_problem(run.directory, run.case, run.parameters, runs[0])

@@ -17,7 +17,7 @@ from mesh.io import read_mesh, write_mesh
 from mesh.moments import mean_spacing
 from mesh.quality import mesh_quality
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.compare import Comparison, compare, fields_of, fields_on
+from postprocess.compare import Comparison, compare_runs, fields_of, fields_on
 from postprocess.families import FAMILIES
 from postprocess.folders import prepared_folder
 from postprocess.runs import Run
@@ -98,15 +98,13 @@ def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> 
     task = Task(plan.folder / "runs" / name, plan.case, mesh, plan.days, plan.error_day)
     run, failure = task.carry_out(progress, tell)
     comparison = None if run is None else _comparison(run, plan.error_day, tell)
-    if comparison is not None:
-        run = comparison.entries[0].run  # the same, read once more
     return Member(family, cells, mesh.scaled(plan.case.radius) if run is None else run.mesh, run, comparison, failure)
 
 
 def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
     """The run beside the solution of its case; None where that is not known, for a reason that is told."""
     try:
-        return compare([run.directory], days=[day])
+        return compare_runs([run], days=[day])
     except SetupError as error:
         tell(f"no errors: {error}")
         return None

@@ -60,13 +60,15 @@ class Task:
 
     def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
         """The run, made unless it is there already; where it fails there is none, but the reason."""
-        if not self.is_finished():
-            tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
-            try:
-                self._run(progress)
-            except RunError as error:
-                tell(f"{self.directory.name}: {error}")
-                return None, str(error)
+        run = self.finished_run()
+        if run is not None:
+            return run, ""
+        tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
+        try:
+            self._run(progress)
+        except RunError as error:
+            tell(f"{self.directory.name}: {error}")
+            return None, str(error)
         return read_run(self.directory), ""
 
     def _run(self, progress: bool) -> None:
@@ -88,16 +90,14 @@ class Task:
             overwrite=not resume,
         )
 
-    def is_finished(self) -> bool:
-        """Whether the directory holds just this run, on this very mesh, run to the end and readable."""
-        return self._is_recorded() and self._is_readable()
-
-    def _is_readable(self) -> bool:
+    def finished_run(self) -> Run | None:
+        """The run where the directory holds just this one, on this very mesh, run to the end and readable."""
+        if not self._is_recorded():
+            return None
         try:
-            read_run(self.directory)
+            return read_run(self.directory)
         except (SetupError, MeshError):
-            return False
-        return True
+            return None
 
     def _is_recorded(self) -> bool:
         try:

@@ -36,6 +36,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
     return mesh, folder / "run"
 
 
+@pytest.mark.slow
 def test_history_that_finds_no_room(whole: tuple[Path, Path], tmp_path: Path) -> None:
     mesh, complete = whole
     size = (complete / "history.nc").stat().st_size
@@ -62,6 +63,7 @@ def test_history_that_finds_no_room(whole: tuple[Path, Path], tmp_path: Path) ->
         assert (tmp_path / "run" / name).read_bytes() == (complete / name).read_bytes()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("blocks", [1, 45, 100])
 def test_any_file_that_finds_no_room(whole: tuple[Path, Path], tmp_path: Path, blocks: int) -> None:
     """From the record of the run, the smallest, over diagnostics, checkpoints and mesh to the history."""

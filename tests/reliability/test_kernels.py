@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+pytestmark = pytest.mark.slow
+
 EXERCISE = Path(__file__).parent / "exercise_kernels.py"
 
 

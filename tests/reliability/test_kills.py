@@ -5,7 +5,10 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
 from kill_runs import kill_and_resume, time_of_run
+
+pytestmark = pytest.mark.slow
 
 
 def test_killed_runs_go_on_to_equal_files(tmp_path: Path) -> None:
