@@ -4,7 +4,7 @@ import math
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any, ClassVar
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from cases.differences import gradient, laplacian
 from mesh.arrays import Array
 from mesh.operators import normal_velocity_from_streamfunction
+from mesh.plain import plain, plain_number
 from mesh.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
@@ -20,6 +21,9 @@ from swe.state import State
 
 SMALLEST, LARGEST = 1e-6, 1e12
 """Radii, m, and gravities, m/s2, that arithmetic bears."""
+
+RADIUS_TOLERANCE = 1e-9
+"""Relative difference by which the radius of a mesh may miss that of a case: files round."""
 
 LARGEST_ANGLE = 4.0 * math.pi
 """Two turns, radians: beyond, a number is likely to be in degrees."""
@@ -66,6 +70,11 @@ class Case(ABC):
     """Angular velocity of the sphere, 1/s."""
 
     def __post_init__(self) -> None:
+        for field in fields(self):
+            value = plain(getattr(self, field.name))
+            if isinstance(field.default, float):
+                value = plain_number(field.name, value, SetupError)
+            object.__setattr__(self, field.name, value)
         for name, value in self.parameters().items():
             if isinstance(value, float) and not math.isfinite(value):
                 raise SetupError(f"{name} is {value}; give a finite number")
@@ -129,8 +138,14 @@ class Case(ABC):
         """State at `time` seconds on `mesh`: thickness at the cells, normal velocity from the streamfunction.
 
         Thickness is that of the centres, or the mean over each cell where `sampling` is "mean". The streamfunction
-        is taken at vertices, so that the velocity has no discrete divergence.
+        is taken at vertices, so that the velocity has no discrete divergence. Raises `SetupError` where the mesh has
+        another radius than the case.
         """
+        if not math.isclose(mesh.sphere_radius, self.radius, rel_tol=RADIUS_TOLERANCE):
+            raise SetupError(
+                f"the mesh has a radius of {mesh.sphere_radius:.10g} m, but {self.name} one of {self.radius:.10g} m; "
+                f"scale the mesh first, mesh.scaled({self.radius:.10g})"
+            )
         streamfunction = self.evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
         return State(
             sample_cells(mesh, self.evaluated(self.thickness, time), sampling),

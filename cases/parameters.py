@@ -43,6 +43,11 @@ def split_settings(settings: Iterable[str]) -> dict[str, str]:
 def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     """`case` with other values of some parameters; raise `SetupError` where it has no such or they are no values."""
     present = case.parameters()
+    # The record of a run has lists where a case has tuples.
+    parameters = {
+        name: tuple(value) if isinstance(value, list) and isinstance(present.get(name), tuple) else value
+        for name, value in parameters.items()
+    }
     for name in parameters:
         if name not in present:
             raise SetupError(f"{case.name} has no parameter '{name}'; choose among {', '.join(present)}")

@@ -38,13 +38,13 @@ WEIGHTS = 0.5 * _weights
 
 @numba.njit(cache=True)
 def _small_excess(square: float) -> float:
-    """S / sin(s) - 1 for an arc s with squared chord below SMALL."""
+    """The value of s / sin(s) - 1 for an arc s with squared chord below SMALL."""
     return square * (1 / 6 + square * (1 / 30 + square * (1 / 140 + square / 630)))
 
 
 @numba.njit(cache=True)
 def _excess(square: float) -> float:
-    """S / sin(s) - 1 for an arc s below pi with any squared chord."""
+    """The value of s / sin(s) - 1 for an arc s below pi with any squared chord."""
     if square < SMALL:
         return _small_excess(square)
     half = np.sqrt(0.25 * square)

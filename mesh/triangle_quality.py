@@ -32,7 +32,7 @@ def _orientation(points: Array, a: int, b: int, c: int) -> float:
 
 @numba.njit(cache=True)
 def quality_of_triangle(points: Array, a: int, b: int, c: int) -> float:
-    """Q of one triangle, negative if it is inverted."""
+    """The quality q of one triangle, negative if it is inverted."""
     u, v, w = chord(points, b, c), chord(points, c, a), chord(points, a, b)
     q = (v + w - u) * (w + u - v) * (u + v - w) / (u * v * w)
     return q if _orientation(points, a, b, c) > 0.0 else -q
@@ -40,7 +40,7 @@ def quality_of_triangle(points: Array, a: int, b: int, c: int) -> float:
 
 @numba.njit(cache=True)
 def qualities(points: Array, triangles: Index) -> Array:
-    """Q (m,) of all triangles (m, 3)."""
+    """The qualities q (m,) of all triangles (m, 3)."""
     values = np.empty(len(triangles))
     for triangle in range(len(triangles)):
         a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]

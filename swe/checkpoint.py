@@ -17,6 +17,13 @@ from swe.state import State
 KEPT = 2
 
 PATTERN = "checkpoint.*.npz"
+"""All checkpoints of a run."""
+
+NUMBERED = "checkpoint.[0-9]*.npz"
+"""Those at their intervals, at a stop and at an end that is none of a longer run, by the number of steps."""
+
+SHARED = "checkpoint.shared.npz"
+"""The last state that a longer run has as well (`swe.schedule.last_shared`), where no numbered one may hold it."""
 
 COUNTS = ("steps", "snapshots", "rows", "history_size", "diagnostics_size")
 """Integers of a checkpoint."""
@@ -39,9 +46,12 @@ class Checkpoint:
     diagnostics_size: int
 
 
-def write_checkpoint(directory: Path, checkpoint: Checkpoint) -> None:
-    """Write a checkpoint to a run directory and remove all but the last two; raise `RunError` where that fails."""
-    path = directory / f"checkpoint.{checkpoint.steps:010d}.npz"
+def write_checkpoint(directory: Path, checkpoint: Checkpoint, shared: bool = False) -> None:
+    """Write a checkpoint to a run directory and remove all but the last two; raise `RunError` where that fails.
+
+    The one `shared` with longer runs has a place of its own, where it stays until another takes it.
+    """
+    path = directory / (SHARED if shared else _name(checkpoint.steps))
     try:
         with written_aside(path) as aside, aside.open("wb") as file:
             np.savez(
@@ -59,31 +69,55 @@ def write_checkpoint(directory: Path, checkpoint: Checkpoint) -> None:
         raise RunError(f"{path} cannot be written ({error.strerror or error}); is the disk full?") from error
 
 
-def last_checkpoint(directory: Path, n_cells: int, n_edges: int) -> Checkpoint | None:
-    """The last checkpoint of a run directory that is whole; None where there is none at all.
+def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float = float("inf")) -> Checkpoint | None:
+    """The last checkpoint of a run directory that is whole and not after `latest`, seconds; None where there is none.
 
     Warns with `SetupWarning` of one that is damaged; raises `SetupError` where all are.
     """
-    paths = checkpoint_paths(directory)
-    for path in reversed(paths):
-        try:
-            return _read(path, n_cells, n_edges)
-        except Exception as error:  # of all kinds, as any byte may be another
-            warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
-    if paths:
+    shared = [path for path in (directory / SHARED,) if path.exists()]
+    numbered = checkpoint_paths(directory)[::-1]
+    found, any_whole = [], False
+    for paths in (shared, numbered):
+        for path in paths:
+            try:
+                checkpoint = _read(path, n_cells, n_edges)
+            except Exception as error:  # of all kinds, as any byte may be another
+                warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
+                continue
+            any_whole = True
+            if checkpoint.time <= latest:
+                found.append(checkpoint)
+                break
+    if (shared or numbered) and not any_whole:
         raise SetupError(f"no checkpoint in {directory} is whole; start anew (--force)")
-    return None
+    return max(found, key=lambda checkpoint: checkpoint.time, default=None)
 
 
-def remove_checkpoints(directory: Path) -> None:
-    """Remove the checkpoints of a run that is to be replaced."""
+def remove_checkpoints(directory: Path, after: int = 0) -> None:
+    """Remove the checkpoints of a run that is to be replaced, or those after so many steps where it takes another way.
+
+    The one that is shared goes with all of them only.
+    """
+    if after == 0:
+        (directory / SHARED).unlink(missing_ok=True)
     for path in checkpoint_paths(directory):
-        path.unlink()
+        if path.name > _name(after):
+            path.unlink()
+
+
+def remove_superseded(directory: Path, steps: int) -> None:
+    """Remove the checkpoint that is shared where there is a numbered one after `steps` steps, all of the run."""
+    if (directory / _name(steps)).exists():
+        (directory / SHARED).unlink(missing_ok=True)
+
+
+def _name(steps: int) -> str:
+    return f"checkpoint.{steps:010d}.npz"
 
 
 def checkpoint_paths(directory: Path) -> list[Path]:
-    """Checkpoints of a run directory, the oldest first."""
-    return sorted(directory.glob(PATTERN))
+    """Checkpoints of a run directory at their intervals, the oldest first."""
+    return sorted(directory.glob(NUMBERED))
 
 
 def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:

@@ -1,5 +1,7 @@
 """Sums without rounding, so that they depend neither on the order of the terms nor on threads."""
 
+import math
+
 import numba
 import numpy as np
 
@@ -35,11 +37,14 @@ def exact_sums(rows: Array) -> list[float]:
 
 
 def _rounded(words: Index) -> float:
-    """The double nearest to the number that words (WORDS,) with carries make."""
+    """The double nearest to the number that words (WORDS,) with carries make; infinite where that is too large."""
     total = 0
     for word in reversed(words.tolist()):
         total = (total << WORD) + word
-    return total / (1 << -LOWEST_EXPONENT)
+    try:
+        return total / (1 << -LOWEST_EXPONENT)
+    except OverflowError:
+        return math.inf if total > 0 else -math.inf
 
 
 @numba.njit(cache=True, parallel=True)

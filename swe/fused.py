@@ -5,6 +5,7 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from swe import tile_kernels
+from swe.errors import SetupError
 from swe.model import ShallowWaterModel
 from swe.state import State
 from swe.tiles import Tiles, build_tiles
@@ -14,10 +15,15 @@ class FusedRungeKutta:
     """Advances a state by classical RK4; computes what `RungeKutta(model.tendency, state)` does, to round-off.
 
     The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files of others equal up to
-    their noise. Topography and Coriolis parameter are taken from the model once, here.
+    their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `SetupError` where the
+    model anticipates potential vorticity, which the loops over tiles do not.
     """
 
     def __init__(self, model: ShallowWaterModel) -> None:
+        if model.anticipation > 0.0:
+            raise SetupError(
+                "the fused method does not anticipate potential vorticity; take RungeKutta(model.tendency, ...)"
+            )
         self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity)
         self.model = model
         self._scratch = _scratch(self.tiles)

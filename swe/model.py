@@ -1,5 +1,6 @@
 """The equations on one mesh: everything that the tendency and the diagnostics need, apart from any clock."""
 
+import copy
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -46,7 +47,7 @@ class ShallowWaterModel:
     ----------
     anticipation
         Seconds by which the tendency anticipates potential vorticity, q_e - anticipation (u . grad q)_e in the Coriolis
-        force (Sadourny and Basdevant 1985); 0 unless it is set.
+        force (Sadourny and Basdevant 1985); 0 but for a model made by `anticipating`.
     sign_on_vertex, sign_on_cell
         Signs of circulations round vertices and of outflows of cells, see `kernels.edge_signs_on_vertex` and
         `kernels.edge_signs_on_cell`.
@@ -70,7 +71,7 @@ class ShallowWaterModel:
         self.coriolis = coriolis
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
-        self.anticipation = 0.0
+        self._anticipation = 0.0
         self.area = exact_sum(mesh.area_cell)
         self.bottom_volume = exact_sum(mesh.area_cell * topography)
         self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
@@ -78,6 +79,17 @@ class ShallowWaterModel:
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
+
+    @property
+    def anticipation(self) -> float:
+        """Seconds by which the tendency anticipates potential vorticity."""
+        return self._anticipation
+
+    def anticipating(self, seconds: float) -> "ShallowWaterModel":
+        """The same model, with the same arrays, where potential vorticity is anticipated by so many seconds."""
+        other = copy.copy(self)
+        other._anticipation = seconds
+        return other
 
     # The plain tendency alone needs these; a run takes the fused path and saves their memory.
 

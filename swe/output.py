@@ -72,14 +72,28 @@ SERIES = {
 }
 """Diagnostics: name -> units, meaning."""
 
+TIME_COORDINATE = "Time"
+
+SCHEME = "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy"
+
 PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
-def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
-    """Make a history file without snapshots; raise `RunError` where it cannot be written."""
+COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVertices": "lonVertex latVertex"}
+"""Where the values at cells, edges and vertices lie, as the CF conventions have it."""
+
+
+def create_history(path: Path, mesh: VoronoiMesh, topography: Array, description: Mapping[str, object]) -> None:
+    """Make a history file without snapshots; raise `RunError` where it cannot be written.
+
+    Attributes name what the `description` of the run tells.
+    """
     with _new_file(path) as file:
-        file.setncatts(mesh_attributes(mesh, "snapshots of a shallow-water run"))
+        file.setncatts({**mesh_attributes(mesh, "snapshots of a shallow-water run"), **_attributes(description)})
         write_mesh_variables(file, mesh, GEOMETRY)
+        for names in COORDINATES.values():
+            longitude, latitude = names.split()
+            file[longitude].standard_name, file[latitude].standard_name = "longitude", "latitude"
         _define_time(file)
         _define(file, "topography", ("nCells",), "m", "height of the bottom")
         file["topography"][:] = topography
@@ -87,12 +101,28 @@ def create_history(path: Path, mesh: VoronoiMesh, topography: Array) -> None:
             _define(file, name, ("Time", place), units, long_name)
 
 
-def create_diagnostics(path: Path) -> None:
+def create_diagnostics(path: Path, description: Mapping[str, object]) -> None:
     """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
     with _new_file(path) as file:
+        file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(description)})
         _define_time(file)
         for name, (units, long_name) in SERIES.items():
             _define(file, name, ("Time",), units, long_name)
+
+
+def _attributes(description: Mapping[str, object]) -> dict[str, object]:
+    """Global attributes that tell which run a file is of; nothing that differs between equal runs."""
+    configuration = description["configuration"]
+    assert isinstance(configuration, dict)
+    return {
+        "title": f"{description['case']}, a run of the shallow-water model of trisk",
+        "case": description["case"],
+        "parameters": json.dumps(description["parameters"]),
+        "mesh_hash": description["mesh_hash"],
+        "scheme": SCHEME,
+        **configuration,
+        "trisk_version": package_versions()["trisk"],
+    }
 
 
 @contextmanager
@@ -109,7 +139,7 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 class _TimeFile:
-    """A file that grows along time; `rows` is where the next one goes: after the last, or over what follows `rows`.
+    """A file that grows along time; `rows` are those that stay, all by default, and what follows them is cut off.
 
     Raises `SetupError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
     `size` bytes, or its first `rows` are not those of ascending times.
@@ -119,18 +149,20 @@ class _TimeFile:
         self._path = path
         self._failed = False
         try:
-            self._file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+            self._file = _opened(path)
             present = len(self._file.dimensions["Time"])
             missing = {"time", *names} - set(self._file.variables)
         except (OSError, RuntimeError, KeyError) as error:
             raise SetupError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
-        # Values are written as they are; looking for masks and scales takes as long as writing them.
-        self._file.set_auto_maskandscale(False)
         self.rows = present if rows is None else rows
         times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
         if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
             self._file.close()
             raise SetupError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
+        if self.rows < present:
+            self._file.close()
+            _cut_off(path, self.rows, size)
+            self._file = _opened(path)
         self._file.set_fill_off()
 
     @property
@@ -144,6 +176,8 @@ class _TimeFile:
         try:
             for name, value in values.items():
                 self._file[name][rows] = value
+            if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
+                self._file[TIME_COORDINATE][rows] = values["time"]
             self._file.sync()
         except (OSError, RuntimeError) as error:
             self._failed = True
@@ -154,6 +188,22 @@ class _TimeFile:
         """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
         if not self._failed:
             self._file.close()
+
+
+def _opened(path: Path) -> netCDF4.Dataset:
+    """The file, to be read and written."""
+    file = netCDF4.Dataset(path, "a" if path.exists() else "r")  # the former would make a file
+    # Values are written as they are; looking for masks and scales takes as long as writing them.
+    file.set_auto_maskandscale(False)
+    return file
+
+
+def _cut_off(path: Path, rows: int, size: int) -> None:
+    """Leave the first `rows` rows of a file of the classic format, which has `size` bytes then."""
+    with path.open("r+b") as file:
+        file.seek(4)  # behind the letters that tell the format stands the number of rows
+        file.write(rows.to_bytes(4, "big"))
+        file.truncate(size)
 
 
 class HistoryFile(_TimeFile):
@@ -277,18 +327,21 @@ def package_versions() -> dict[str, str]:
 def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
     variable = file.createVariable(name, "f8", dimensions)
     variable.setncatts({"units": units, "long_name": long_name})
+    if dimensions[-1] in COORDINATES:
+        variable.coordinates = COORDINATES[dimensions[-1]]
 
 
 def _define_time(file: netCDF4.Dataset) -> None:
+    """Define `time`, and again under the name of the dimension, which makes it a coordinate to select by."""
     file.createDimension("Time", None)
-    time = file.createVariable("time", "f8", ("Time",))
-    time.setncatts(
-        {
-            "units": "seconds since 2000-01-01 00:00:00",
-            "long_name": "time since the start of the run",
-            "standard_name": "time",
-            "calendar": "proleptic_gregorian",
-        }
+    attributes = {
+        "units": "seconds since 2000-01-01 00:00:00",
+        "long_name": "time since the start of the run",
+        "calendar": "proleptic_gregorian",
+    }
+    file.createVariable("time", "f8", ("Time",)).setncatts(attributes)
+    file.createVariable(TIME_COORDINATE, "f8", ("Time",)).setncatts(
+        {**attributes, "standard_name": "time", "axis": "T"}
     )
 
 

@@ -1,6 +1,7 @@
 """What a run leaves in its directory, and how it goes on from there."""
 
 import hashlib
+import json
 import os
 import time as clock
 import warnings
@@ -16,8 +17,16 @@ import numpy as np
 from mesh.errors import MeshError
 from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
+from mesh.plain import recordable
 from swe.budgets import measure_rates
-from swe.checkpoint import PATTERN, Checkpoint, last_checkpoint, remove_checkpoints, write_checkpoint
+from swe.checkpoint import (
+    PATTERN,
+    Checkpoint,
+    last_checkpoint,
+    remove_checkpoints,
+    remove_superseded,
+    write_checkpoint,
+)
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import RunError, RunStopped, SetupError, SetupWarning
 from swe.invariants import measure_invariants, relative_changes
@@ -80,25 +89,37 @@ class Recorder:
                 SetupWarning,
                 stacklevel=4,
             )
-        try:
-            self._days_before, self._seconds_before = float(str(before["days"])), float(str(before["wall_seconds"]))
-        except (KeyError, ValueError) as error:
-            raise SetupError(
-                f"{self.directory / RECORD_FILE} does not tell the days of the run; start anew (--force)"
-            ) from error
+        self._days_before = days_of(before, self.directory)
+        self._seconds_before = _number_in(before, "wall_seconds", self.directory)
 
     def restore(self, simulation: "Simulation") -> None:
         """Put the run to be gone on with, if any, back to where its last checkpoint is."""
         if not self.resumed:
             return
-        checkpoint = last_checkpoint(self.directory, simulation.mesh.n_cells, simulation.mesh.n_edges)
-        if checkpoint is None:
+        self._reached = last_checkpoint(self.directory, simulation.mesh.n_cells, simulation.mesh.n_edges)
+        if self._reached is None:
             warnings.warn(f"{self.directory} holds no checkpoint; the run begins again", SetupWarning, stacklevel=3)
             return
-        simulation.state.thickness[:] = checkpoint.state.thickness
-        simulation.state.normal_velocity[:] = checkpoint.state.normal_velocity
-        simulation.time, simulation.steps = checkpoint.time, checkpoint.steps
-        self._reached = checkpoint
+        simulation.set_back_to(self._reached.state, self._reached.time, self._reached.steps)
+
+    def choose_end(self, simulation: "Simulation", days: float) -> None:
+        """Give the run to be gone on with, if any, another end: go back to where a run to `days` has been as well."""
+        before, self._days_before = self._days_before, None
+        if before is None or days == before:
+            return
+        shared = min(simulation.last_shared_time(before), simulation.last_shared_time(days))
+        cells, edges = simulation.mesh.n_cells, simulation.mesh.n_edges
+        self._reached = last_checkpoint(self.directory, cells, edges, latest=shared)
+        if self._reached is not None:
+            simulation.set_back_to(self._reached.state, self._reached.time, self._reached.steps)
+            return
+        if shared > 0.0:
+            warnings.warn(
+                f"{self.directory} holds no checkpoint from which a run to day {days:g} goes on; the run begins again",
+                SetupWarning,
+                stacklevel=3,
+            )
+        simulation.set_back_to_start()
 
     def _require_unchanged(self) -> None:
         """Raise `SetupError` where another run wrote to the directory since this one looked at it."""
@@ -106,15 +127,10 @@ class Recorder:
             raise SetupError(f"{self.directory} was written to by another run meanwhile; start again")
         self._began = True
 
-    def require_days(self, days: float) -> None:
-        """Raise `SetupError` where the run to be gone on with, if any, was to last for another number of days."""
-        if self._days_before is not None and days != self._days_before:
-            raise SetupError(f"{self.directory} holds {_difference('days', self._days_before, days)}; {HOW_TO_GO_ON}")
-
     @contextmanager
     def recording(self, simulation: "Simulation", days: float) -> Iterator[None]:
         """Keep the files open in the course of a run to `days`, and write how it ended."""
-        self._days, self._days_before = days, None
+        self._days = days
         self._begun = clock.perf_counter()
         self._make_directory()
         with held(self.directory) as free:
@@ -132,6 +148,8 @@ class Recorder:
                 stopped = isinstance(error, RunStopped | KeyboardInterrupt)
                 self._end(simulation, "interrupted" if stopped else "failed", str(error))
                 raise
+            if simulation.last_shared_time(days) == simulation.time:
+                remove_superseded(self.directory, simulation.steps)
             self._end(simulation, "completed")
 
     def _open(self, simulation: "Simulation") -> None:
@@ -143,13 +161,14 @@ class Recorder:
             remove_checkpoints(self.directory)
             (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
             self._write_status(simulation, "running")
-            create_history(history, simulation.mesh, simulation.model.topography)
-            create_diagnostics(diagnostics)
+            create_history(history, simulation.mesh, simulation.model.topography, self._description)
+            create_diagnostics(diagnostics, self._description)
         if reached is None:
             self._history, self._diagnostics = HistoryFile(history), DiagnosticsFile(diagnostics)
         else:
             self._history = HistoryFile(history, reached.snapshots, reached.history_size)
             self._diagnostics = DiagnosticsFile(diagnostics, reached.rows, reached.diagnostics_size)
+            remove_checkpoints(self.directory, after=reached.steps)
             self._reached = None
         self._write_status(simulation, "running")
         if starting or reached is not None:
@@ -194,8 +213,8 @@ class Recorder:
                 float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
             )
 
-    def checkpoint(self, simulation: "Simulation") -> None:
-        """Write a checkpoint, after all that comes before it."""
+    def checkpoint(self, simulation: "Simulation", shared: bool = False) -> None:
+        """Write a checkpoint, after all that comes before it; see `write_checkpoint`."""
         assert self._history is not None
         assert self._diagnostics is not None
         self._diagnostics.flush()
@@ -210,6 +229,7 @@ class Recorder:
                 self._history.size,
                 self._diagnostics.size,
             ),
+            shared,
         )
         self._write_status(simulation, "running")
 
@@ -259,10 +279,18 @@ HOW_TO_GO_ON = "give the same options, or another directory"
 
 def _description(simulation: "Simulation") -> dict[str, object]:
     """What a run must have in common with the one that it goes on from, as the record has it."""
+    parameters = simulation.case.parameters()
+    try:
+        recorded = json.loads(json.dumps(parameters, default=recordable))
+    except (TypeError, ValueError, RecursionError) as error:
+        raise SetupError(
+            f"the parameters of {simulation.case.name} cannot be recorded ({error}); give numbers, words, or lists of "
+            "them"
+        ) from error
     return {
         "mesh_hash": mesh_hash(simulation.mesh),
         "case": simulation.case.name,
-        "parameters": simulation.case.parameters(),
+        "parameters": recorded,
         "configuration": asdict(simulation.configuration),
         "start_hash": _start_hash(simulation),
     }
@@ -321,3 +349,17 @@ def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[st
             "(--force)"
         )
     return before
+
+
+def days_of(record: dict[str, object], directory: Path) -> float:
+    """Days that a run was to last according to its `record`; raise `SetupError` where that does not tell."""
+    return _number_in(record, "days", directory)
+
+
+def _number_in(record: dict[str, object], name: str, directory: Path) -> float:
+    value = record.get(name)
+    if not isinstance(value, int | float) or not 0.0 <= value < float("inf"):
+        raise SetupError(
+            f"{directory / RECORD_FILE} does not tell the {name.replace('_', ' ')} of the run; start anew (--force)"
+        )
+    return float(value)

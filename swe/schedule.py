@@ -1,5 +1,6 @@
 """When things happen in a run: at whole multiples of an interval, and at the end."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,9 +32,31 @@ class Schedule:
         event = float(count * self.interval)
         return self.end if event > self.end - ROUNDING * self.interval else event
 
+    def last_before_end(self) -> float:
+        """The last event before the end, seconds; 0 where there is none."""
+        count = np.floor(self.end / self.interval)
+        while count > 0.0 and count * self.interval > self.end - ROUNDING * self.interval:
+            count -= 1.0
+        return float(count * self.interval)
+
+    def ends_on_multiple(self) -> bool:
+        """Whether the end is a whole multiple of the interval, to the last bit."""
+        return self.end == float(np.round(self.end / self.interval) * self.interval)
+
     def is_due(self, time: float) -> bool:
         """Whether `time` is an event: the start, a multiple of the interval, or the end."""
         return time == 0.0 or time == self.end or time == np.round(time / self.interval) * self.interval
+
+
+def last_shared(schedules: Sequence[Schedule]) -> float:
+    """The last time, seconds, at which a run with these schedules has done what any longer one has done by then.
+
+    That is its end where all of them have an event there by themselves. Else it is the last event before: after it
+    comes a step that is shortened to land on the end, or a record that a longer run has not.
+    """
+    if all(schedule.ends_on_multiple() for schedule in schedules):
+        return schedules[0].end
+    return max(schedule.last_before_end() for schedule in schedules)
 
 
 def step_towards(time: float, event: float, time_step: float) -> tuple[float, float]:

@@ -4,15 +4,21 @@ import os
 import warnings
 from collections.abc import Callable
 from contextlib import nullcontext
-from dataclasses import dataclass
-from pathlib import Path
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Protocol
 
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.plain import plain_number, plain_path
 from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
+from swe.configuration import (
+    DEFAULT_CHECKPOINT_INTERVAL,
+    DEFAULT_DIAGNOSTICS_INTERVAL,
+    DEFAULT_SNAPSHOT_INTERVAL,
+    Integrator,
+    Options,
+)
 from swe.constants import SECONDS_PER_DAY
 from swe.dissipation import BiharmonicDissipation
 from swe.errors import RunError, RunStopped, SetupError, SetupWarning
@@ -23,8 +29,9 @@ from swe.model import STABLE_COURANT_NUMBER, ShallowWaterModel, check_field
 from swe.progress import ProgressBar
 from swe.recorder import Recorder
 from swe.relaxation import Relaxation
-from swe.schedule import Schedule, dividing_step
+from swe.schedule import Schedule, dividing_step, last_shared
 from swe.signals import StopRequest, stop_requests
+from swe.soundness import has_negative_kites, problem_at_vertices, problem_with_state, warning_of_vertices
 from swe.state import State
 from swe.steppers import DissipatingMethod, FixedSteps, RelaxedSteps, Stepper
 from swe.threads import worthwhile_threads
@@ -38,13 +45,6 @@ CELL_STEPS_PER_CALL = 400_000
 
 MOST_EVENTS = 1e9
 """Steps, snapshots or rows of a run; more of them take years."""
-
-DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
-DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
-DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
-
-Integrator = Literal["rk4", "rrk4"]
-"""Classical Runge-Kutta, or that with relaxation, which keeps total energy to round-off."""
 
 
 class Case(Protocol):
@@ -77,19 +77,6 @@ class Case(Protocol):
 
     def parameters(self) -> dict[str, float]:
         """Parameters of the case by name, for the record of the run."""
-
-
-@dataclass(frozen=True)
-class Configuration:
-    """What determines a run besides mesh and case; times in seconds, dissipation in m4/s."""
-
-    time_step: float
-    snapshot_interval: float
-    diagnostics_interval: float
-    sampling: Sampling
-    integrator: Integrator
-    anticipation: float
-    dissipation: float
 
 
 class Simulation:
@@ -151,48 +138,85 @@ class Simulation:
         overwrite: bool = False,
         resume: bool = False,
     ) -> None:
-        require_options(
-            case,
-            time_step=time_step,
-            snapshot_interval=snapshot_interval,
-            diagnostics_interval=diagnostics_interval,
-            checkpoint_interval=checkpoint_interval,
-            integrator=integrator,
-            anticipation=anticipation,
-            dissipation=dissipation,
+        options = Options(
+            time_step,
+            snapshot_interval,
+            diagnostics_interval,
+            checkpoint_interval,
+            sampling,
+            integrator,
+            anticipation,
+            dissipation,
         )
+        options.require_suitable(case.name, case.prescribed_wind)
+        directory = None if output is None else plain_path("output", output, SetupError)
         self.case = case
         self.mesh = mesh.scaled(case.radius)
-        topography = _asked(case, case.topography_on, self.mesh, sampling)
+        topography = _asked(case, case.topography_on, self.mesh, options.sampling)
         coriolis = _asked(case, case.coriolis_on, self.mesh)
         self.model = ShallowWaterModel(self.mesh, topography, coriolis, case.gravity, case.prescribed_wind)
-        self.state = _asked(case, case.initial_state, self.mesh, sampling)
-        if not isinstance(self.state, State):
-            raise SetupError(f"initial_state of {case.name} gives {type(self.state).__name__}; it must give a State")
-        check_field("initial thickness", self.state.thickness, self.mesh.n_cells)
-        check_field("initial normal velocity", self.state.normal_velocity, self.mesh.n_edges)
+        self._kites_matter = has_negative_kites(self.mesh) and not case.prescribed_wind
+        self.state = self._initial_state(options.sampling)
         self.time = 0.0
         self.steps = 0
         self._broken = False
-        problem = self._problem_with_state()
-        if problem:
-            raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
-        if time_step is None:
-            time_step = self._default_time_step(min(snapshot_interval, diagnostics_interval))
-        self.configuration = Configuration(
-            time_step, snapshot_interval, diagnostics_interval, sampling, integrator, anticipation, dissipation
+        step = options.time_step or self._default_time_step(
+            min(options.snapshot_interval, options.diagnostics_interval)
         )
-        self.checkpoint_interval = checkpoint_interval
-        self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, time_step)
+        self.configuration = options.with_time_step(step)
+        self.checkpoint_interval = options.checkpoint_interval
+        self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, step)
         self.initial_invariants = self.invariants
-        self.dissipation = BiharmonicDissipation(self.model, dissipation) if dissipation > 0.0 else None
+        self._require_finite_integrals()
+        if options.anticipation > 0.0:
+            self.model = self.model.anticipating(options.anticipation * step)
+        self.dissipation = BiharmonicDissipation(self.model, options.dissipation) if options.dissipation > 0.0 else None
         self._warn_of_instability()
-        self.recorder = None if output is None else Recorder(self, Path(output), overwrite, resume)
+        thin = warning_of_vertices(self.mesh, self.state.thickness) if self._kites_matter else None
+        if thin:
+            warnings.warn(thin, SetupWarning, stacklevel=2)
+        self.recorder = None if directory is None else Recorder(self, directory, overwrite, resume)
         self.method = self._build_method()
         self.stepper = self._build_stepper()
         if self.recorder is not None:
             self.recorder.restore(self)
         return_freed_memory()
+
+    def _initial_state(self, sampling: Sampling) -> State:
+        """The state at time zero; raises `SetupError` where it is not sound."""
+        case, mesh = self.case, self.mesh
+        state = _asked(case, case.initial_state, mesh, sampling)
+        if not isinstance(state, State):
+            raise SetupError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
+        check_field("initial thickness", state.thickness, mesh.n_cells)
+        check_field("initial normal velocity", state.normal_velocity, mesh.n_edges)
+        problem = problem_with_state(mesh, state)
+        if problem:
+            raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
+        problem = problem_at_vertices(mesh, state.thickness) if self._kites_matter else None
+        if problem:
+            raise SetupError(f"the initial {problem}")
+        return state
+
+    def _require_finite_integrals(self) -> None:
+        """Raise `SetupError` where a global integral is beyond the numbers, so that no change of it can be told."""
+        for name, value in vars(self.initial_invariants).items():
+            if not np.isfinite(value):
+                raise SetupError(
+                    f"the initial {name.replace('_', ' ')} is {value:g}, beyond the range of numbers; correct the "
+                    f"parameters of {self.case.name}"
+                )
+
+    def set_back_to(self, state: State, time: float, steps: int) -> None:
+        """Go on from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""
+        self.state.thickness[:] = state.thickness
+        self.state.normal_velocity[:] = state.normal_velocity
+        self.time, self.steps = time, steps
+
+    def set_back_to_start(self) -> None:
+        """Go on from the initial state."""
+        self.set_back_to(self._initial_state(self.configuration.sampling), 0.0, 0)
+        self.courant_number = self.initial_courant_number
 
     def _default_time_step(self, interval: float) -> float:
         """Largest step up to the default Courant number that divides `interval`."""
@@ -204,9 +228,8 @@ class Simulation:
 
     def _build_method(self) -> FusedRungeKutta | RungeKutta:
         """The fused method, or its plain twin where the tendency anticipates potential vorticity."""
-        if self.configuration.anticipation == 0.0:
+        if self.model.anticipation == 0.0:
             return FusedRungeKutta(self.model)
-        self.model.anticipation = self.configuration.anticipation * self.configuration.time_step
         return RungeKutta(self.model.tendency, self.state)
 
     def _build_stepper(self) -> Stepper:
@@ -241,22 +264,27 @@ class Simulation:
     def run(self, days: float, progress: bool = True) -> None:
         """Integrate to `days` after the start, writing output on the way.
 
-        Raises `SetupError` where `days` is before now, or not the end of the run that is to go on, `RunError` where the
-        state ceases to be finite or the thickness to be positive, or where output cannot be written, and `RunStopped`
-        between two steps some twentieth of a second after Ctrl-C or SIGTERM; a second one interrupts at once. What was
-        written before stays. After all of these but `RunStopped`, what the object holds is no state to go on from.
+        A run that goes on (`resume`) may have another end than before: it then leaves the files of one run to `days`,
+        bit for bit, for which it may first go back to the last time that both have in common.
+
+        Raises `SetupError` where `days` is before now, `RunError` where the state ceases to be finite or the thickness
+        to be positive, or where output cannot be written, and `RunStopped` between two steps some twentieth of a second
+        after Ctrl-C or SIGTERM; a second one interrupts at once. What was written before stays. After all of these but
+        `RunStopped`, what the object holds is no state to go on from.
         """
+        days = plain_number("the number of days", days, SetupError)
         end = days * SECONDS_PER_DAY
         if self._broken:
-            raise SetupError("the run broke off and cannot go on; make the simulation again, with resume=True")
-        if self.recorder is not None:
-            self.recorder.require_days(days)
-        complete = self.recorder is not None and self.recorder.resumed and end == self.time
-        if not (np.isfinite(end) and (end > self.time or complete)):
+            again = "" if self.recorder is None else ", with resume=True"
+            raise SetupError(f"the run broke off and cannot go on; make the simulation again{again}")
+        resumed = self.recorder is not None and self.recorder.resumed
+        if not (np.isfinite(end) and (end > self.time or (resumed and end == self.time))):
             raise SetupError(
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
             )
         self._require_possible_counts(end - self.time)
+        if self.recorder is not None:
+            self.recorder.choose_end(self, days)
         with (
             worthwhile_threads(self.mesh.n_cells),
             stop_requests() as request,
@@ -287,10 +315,19 @@ class Simulation:
                     f"{seconds / interval:.1g}; give a longer one, or fewer days"
                 )
 
+    def last_shared_time(self, days: float) -> float:
+        """The last time, seconds, at which a run to `days` has done what any longer one has done: `swe.schedule`."""
+        return last_shared(self._schedules(days * SECONDS_PER_DAY))
+
+    def _schedules(self, end: float) -> tuple[Schedule, Schedule]:
+        """When snapshots and diagnostics are due."""
+        configuration = self.configuration
+        return Schedule(configuration.snapshot_interval, end), Schedule(configuration.diagnostics_interval, end)
+
     def _run_to(self, end: float, bar: ProgressBar, request: StopRequest) -> None:
-        snapshots = Schedule(self.configuration.snapshot_interval, end)
-        diagnostics = Schedule(self.configuration.diagnostics_interval, end)
-        checkpoints = Schedule(self.checkpoint_interval, end)
+        snapshots, diagnostics = self._schedules(end)
+        shared = last_shared((snapshots, diagnostics))
+        checkpoints = Schedule(self.checkpoint_interval, float("inf"))
         due = checkpoints.next_after(self.time)
         while self.time < end:
             event = min(snapshots.next_after(self.time), diagnostics.next_after(self.time))
@@ -301,9 +338,12 @@ class Simulation:
                 if self.recorder is not None:
                     self.recorder.record(self, snapshots.is_due(self.time), diagnostics.is_due(self.time))
             bar.update(self.time / SECONDS_PER_DAY)
-            if self.recorder is not None and (self.time >= due or request.signal is not None):
-                self.recorder.checkpoint(self)
-                due = checkpoints.next_after(self.time)
+            if self.recorder is not None:
+                if self.time == shared and (shared < end or self.time < due):
+                    self.recorder.checkpoint(self, shared=True)
+                if self.time >= due or request.signal is not None or self.time == end > shared:
+                    self.recorder.checkpoint(self)
+                    due = checkpoints.next_after(self.time)
             if self.time < end:
                 request.raise_if_any(
                     self.time / SECONDS_PER_DAY,
@@ -315,29 +355,26 @@ class Simulation:
     def _advance(self, event: float) -> None:
         """Take some steps towards `event`, seconds, which none passes."""
         most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
-        self.time, taken = self.stepper.advance(self.state, self.time, event, self.configuration.time_step, most)
+        before, start = self.state.copy() if self._kites_matter else None, self.time
+        self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
         self.steps += taken
         if self.stepper.unsound:
+            if before is not None:
+                self._explain_by_vertices(before, start, event, taken)
             raise RunError(
-                f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {self._problem_with_state()}; "
+                f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the "
+                f"{problem_with_state(self.mesh, self.state)}; "
                 f"the Courant number was {self.initial_courant_number:.3g} at the start: where that is above "
                 f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
             )
 
-    def _problem_with_state(self) -> str | None:
-        """What is wrong with the state, as the end of a sentence; None if nothing is."""
-        h, u = self.state.thickness, self.state.normal_velocity
-        if not np.isfinite(u.sum()):
-            edge = int(np.argmax(~np.isfinite(u)))
-            return f"normal velocity is {u[edge]:g} m/s at edge {edge} (counted from 0)"
-        if h.min() > 0.0 and np.isfinite(h.max()):
-            return None
-        cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
-        longitude, latitude = np.degrees(self.mesh.lon_cell[cell]), np.degrees(self.mesh.lat_cell[cell])
-        return (
-            f"thickness is {h[cell]:g} m in cell {cell} (counted from 0) at longitude {longitude:.1f} and "
-            f"latitude {latitude:.1f} degrees"
-        )
+    def _explain_by_vertices(self, before: State, time: float, event: float, steps: int) -> None:
+        """Take the last `steps` steps again from `before`; raise `RunError` where a vertex goes wrong first."""
+        for step in range(self.steps - steps + 1, self.steps + 1):
+            time, _ = self.stepper.advance(before, time, event, self.configuration.time_step, 1)
+            problem = problem_at_vertices(self.mesh, before.thickness)
+            if problem:
+                raise RunError(f"at day {time / SECONDS_PER_DAY:.3f}, step {step}, the {problem}")
 
 
 def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
@@ -348,34 +385,3 @@ def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
         raise
     except (Exception, SystemExit) as error:
         raise SetupError(f"{function.__name__} of {case.name} failed: {error!r}") from error
-
-
-def require_options(
-    case: Case,
-    *,
-    time_step: float | None,
-    snapshot_interval: float,
-    diagnostics_interval: float,
-    checkpoint_interval: float,
-    integrator: str,
-    anticipation: float,
-    dissipation: float,
-) -> None:
-    """Raise `SetupError` where options of a `Simulation` are out of range or do not go with the case."""
-    for what, interval in (
-        ("snapshot interval", snapshot_interval),
-        ("diagnostics interval", diagnostics_interval),
-        ("checkpoint interval", checkpoint_interval),
-        ("time step", time_step),
-    ):
-        if interval is not None and not 0.0 < interval < np.inf:
-            raise SetupError(f"the {what} is {interval:g} s; it must be positive and finite")
-    if integrator not in get_args(Integrator):
-        raise SetupError(f"the integrator is {integrator!r}; it must be one of {', '.join(get_args(Integrator))}")
-    for what, value in (("anticipation", anticipation), ("dissipation", dissipation)):
-        if not 0.0 <= value < np.inf:
-            raise SetupError(f"the {what} is {value:g}; it must be a finite number, and not negative")
-    if case.prescribed_wind and (integrator != "rk4" or anticipation > 0.0 or dissipation > 0.0):
-        raise SetupError(
-            f"the wind of {case.name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
-        )

@@ -94,7 +94,7 @@ class RelaxedSteps:
 
     def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
         """See `Stepper`."""
-        taken = 0
+        taken = self.unsound = 0
         while taken < most and time < event and not self.unsound:
             time = self._step(state, time, event, time_step)
             taken += 1

@@ -237,7 +237,7 @@ def _add_scaled(first: int, last: int, y: Array, factor: float, slope: Array, re
 def _add_weighted_slopes(
     first: int, last: int, y: Array, second: Array, third: Array, fourth: Array, time_step: float, slope: Array
 ) -> None:
-    """Y + dt (k_1 + 2 k_2 + 2 k_3 + k_4)/6 in place, where dt k_1 = 2 (second - y), ..., dt k_3 = fourth - y.
+    """Add dt (k_1 + 2 k_2 + 2 k_3 + k_4)/6 to y in place, where dt k_1 = 2 (second - y), ..., dt k_3 = fourth - y.
 
     So the states of the stages stand for their slopes, which need not be kept.
     """

@@ -157,7 +157,10 @@ def run(
         bool, typer.Option("--cell-means", help="Start from means over the cells instead of values at their centres.")
     ] = False,
     days: Annotated[
-        float | None, typer.Option("--days", help="Simulated days; by default those that the paper recommends.")
+        float | None,
+        typer.Option(
+            "--days", help="Simulated days since the start; by default those that the paper recommends, or of the run."
+        ),
     ] = None,
     time_step: Annotated[
         float | None, typer.Option("--dt", help="Time step in seconds; by default from the mesh and the wave speed.")
@@ -182,7 +185,10 @@ def run(
     ] = 0.0,
     force: Annotated[bool, typer.Option("--force", help="Replace a run that the directory holds.")] = False,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on from the last checkpoint in the directory, on its mesh.")
+        bool,
+        typer.Option(
+            "--resume", help="Go on with the run in the directory, on its mesh; a finished one to a later --days."
+        ),
     ] = False,
     recompute_metrics: Recompute = False,
     quiet: Quiet = False,
@@ -194,28 +200,30 @@ def run(
     from cases import find_case
     from cases.parameters import split_settings
     from swe import Simulation
+    from swe.configuration import Options
     from swe.errors import SetupError
-    from swe.recorder import run_to_go_on_with
-    from swe.simulation import require_options
+    from swe.recorder import days_of, run_to_go_on_with
     from trisk.meshes import chosen_mesh, mesh_of_run
     from trisk.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
-    last_day = chosen.recommended_days if days is None else days
     options: dict[str, Any] = {
         "time_step": time_step,
         "snapshot_interval": 3600.0 * snapshot_hours,
         "diagnostics_interval": 3600.0 * diagnostics_hours,
         "checkpoint_interval": 3600.0 * checkpoint_hours,
+        "sampling": "mean" if means else "point",
         "integrator": integrator,
         "anticipation": anticipation,
         "dissipation": dissipation,
     }
     # What can be refused is so before a mesh is made for nothing.
-    require_options(chosen, **options)
-    if not 0.0 < last_day < float("inf"):
-        raise SetupError(f"the run is to last {last_day:g} days; give a number above 0")
-    run_to_go_on_with(output, force, resume)
+    Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)
+    before = run_to_go_on_with(output, force, resume)
+    if days is None:
+        days = chosen.recommended_days if before is None else days_of(before, output)
+    if not 0.0 < days < float("inf"):
+        raise SetupError(f"the run is to last {days:g} days; give a number above 0")
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     known = mesh_of_run(output, cells) if resume and mesh_file is None else None
@@ -223,12 +231,11 @@ def run(
         known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
         chosen,
         output,
-        sampling="mean" if means else "point",
         overwrite=force,
         resume=resume,
         **options,
     )
-    simulation.run(last_day, progress=not quiet)
+    simulation.run(days, progress=not quiet)
     if not quiet:
         print_run(output)
 

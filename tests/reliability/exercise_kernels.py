@@ -97,7 +97,7 @@ def exercise() -> dict[str, np.ndarray]:
         }
         filled = dataclasses.replace(plain.mesh, **beyond)
         model = ShallowWaterModel(filled, plain.model.topography, plain.model.coriolis, plain.model.gravity)
-        model.anticipation = 100.0
+        model = model.anticipating(100.0)
         state, tendency = plain.state.copy(), plain.state.empty_like()
         RungeKutta(model.tendency, state).advance(state, 30.0)
         model.tendency(state, tendency)

@@ -59,7 +59,7 @@ def test_rates_add_up_to_the_derivative_of_the_integrals(any_mesh: VoronoiMesh, 
     if any_mesh.dv_edge.min() < 1e-3:
         pytest.skip("gradients along edges of no length have no meaning")
     model, state = random_model(any_mesh)
-    model.anticipation = anticipation
+    model = model.anticipating(anticipation)
     dissipation = gentle(model)
     tendency = state.empty_like()
     model.tendency(state, tendency)

@@ -6,6 +6,7 @@ import netCDF4
 import numba
 import numpy as np
 import pytest
+import xarray
 
 from cases import Williamson2, Williamson5
 from mesh import VoronoiMesh
@@ -166,3 +167,40 @@ def test_steady_state_case_stays_close(icosahedral_mesh: VoronoiMesh) -> None:
     before = simulation.state.copy()
     simulation.run(days=1, progress=False)
     assert np.abs(simulation.state.thickness - before.thickness).max() < 0.01 * before.thickness.max()
+
+
+def test_history_and_diagnostics_tell_what_they_are_of(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    """Coordinates as the CF conventions have them, so that other programs find them; the run by name."""
+    Simulation(icosahedral_mesh, Williamson5(wind_speed=21.0), tmp_path, integrator="rrk4").run(0.5, progress=False)
+    record = json.loads((tmp_path / "run.json").read_text())
+    with xarray.open_dataset(tmp_path / "history.nc") as history:
+        depth = history["thickness"]
+        assert set(depth.coords) == {"Time", "lonCell", "latCell"}
+        assert set(history["normal_velocity"].coords) == {"Time", "lonEdge", "latEdge"}
+        assert set(history["potential_vorticity"].coords) == {"Time", "lonVertex", "latVertex"}
+        assert set(history["topography"].coords) == {"lonCell", "latCell"}
+        at_noon = depth.sel(Time="2000-01-01T12:00")
+        np.testing.assert_array_equal(at_noon, depth[-1])
+        for name in ("Cell", "Edge", "Vertex"):
+            longitude, latitude = history[f"lon{name}"], history[f"lat{name}"]
+            assert (longitude.standard_name, latitude.standard_name) == ("longitude", "latitude")
+            assert longitude.units == latitude.units == "rad"
+        assert history["Time"].standard_name == "time"
+        assert history.sphere_radius == 6371220.0
+        assert history.mesh_spec == "1.0"
+    with xarray.open_dataset(tmp_path / "diagnostics.nc") as diagnostics:
+        assert diagnostics["mass"].sel(Time="2000-01-01T06:00").size == 1
+    for name in ("history.nc", "diagnostics.nc"):
+        with xarray.open_dataset(tmp_path / name) as file:
+            assert file.title == "williamson5, a run of the shallow-water model of trisk"
+            assert file.case == "williamson5"
+            assert json.loads(file.parameters) == record["parameters"]
+            assert json.loads(file.parameters)["wind_speed"] == 21.0
+            assert file.mesh_hash == record["mesh_hash"]
+            assert "Ringler et al. (2010)" in file.scheme
+            assert file.trisk_version == record["versions"]["trisk"]
+            for option, value in record["configuration"].items():
+                assert file.attrs[option] == value
+            assert file.integrator == "rrk4"
+            assert np.datetime64("2000-01-01T12:00") == file["Time"][-1]
+            np.testing.assert_array_equal(file["time"], file["Time"])

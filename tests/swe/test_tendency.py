@@ -115,12 +115,11 @@ def test_anticipation_is_what_the_operators_say(any_mesh: VoronoiMesh) -> None:
     q_edge = -100.0 * (u * q_across + (operators.perp @ u) * q_along)
     flux = (operators.cell_to_edge @ h) * u
     expected = 0.5 * (q_edge * (operators.perp @ flux) + operators.perp @ (q_edge * flux))
-    model.anticipation = 100.0
-    found = model.anticipated_acceleration(state)
+    anticipating = model.anticipating(100.0)
+    found = anticipating.anticipated_acceleration(state)
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
     with_it, without = state.empty_like(), state.empty_like()
-    model.tendency(state, with_it)
-    model.anticipation = 0.0
+    anticipating.tendency(state, with_it)
     model.tendency(state, without)
     difference = with_it.normal_velocity - without.normal_velocity
     np.testing.assert_allclose(difference, expected, rtol=0, atol=1e-12 * np.abs(without.normal_velocity).max())

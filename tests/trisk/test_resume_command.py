@@ -80,3 +80,21 @@ def test_runs_that_would_never_end_are_refused(trisk, mesh_file: Path, tmp_path:
         assert code == 2
         assert words in err
     assert not (tmp_path / "run").exists()
+
+
+def test_a_finished_run_is_carried_on(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    """Days that the record tells are those of a run that goes on without being told any."""
+    run = ("run", "williamson5", "--dt", 1100, "-q", "-o")
+    assert trisk(*run, tmp_path / "whole", "--mesh", mesh_file, "--days", 2) == (0, "", "")
+    assert trisk(*run, tmp_path / "parts", "--mesh", mesh_file, "--days", 1) == (0, "", "")
+    before = (tmp_path / "parts" / "history.nc").read_bytes()
+    assert trisk(*run, tmp_path / "parts", "--resume") == (0, "", "")
+    assert (tmp_path / "parts" / "history.nc").read_bytes() == before
+    assert trisk(*run, tmp_path / "parts", "--resume", "--days", 2) == (0, "", "")
+    for name in ("history.nc", "diagnostics.nc", "checkpoint.0000000160.npz"):
+        assert (tmp_path / "parts" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes()
+    record = json.loads((tmp_path / "parts" / "run.json").read_text())
+    assert (record["status"], record["days"], record["day_reached"], record["steps"]) == ("completed", 2.0, 2.0, 160)
+    code, _, err = trisk(*run, tmp_path / "parts", "--resume", "--days", 1.5)
+    assert code == 2
+    assert err == "error: the run stands at day 2 and cannot go to day 1.5; give a later day\n"

@@ -1,0 +1,88 @@
+"""What determines a run besides mesh and case: options as a user gives them, and as the record of a run has them."""
+
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+
+from mesh.plain import plain_number
+from mesh.quadrature import Sampling
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import SetupError
+
+DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
+DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
+DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
+
+Integrator = Literal["rk4", "rrk4"]
+"""Classical Runge-Kutta, or that with relaxation, which keeps total energy to round-off."""
+
+CHOICES = {"sampling": get_args(Sampling), "integrator": get_args(Integrator)}
+"""Options that are words."""
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """What determines a run besides mesh and case; times in seconds, dissipation in m4/s."""
+
+    time_step: float
+    snapshot_interval: float
+    diagnostics_interval: float
+    sampling: Sampling
+    integrator: Integrator
+    anticipation: float
+    dissipation: float
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of `swe.simulation.Simulation`, which tells what they mean; numbers of any type become floats.
+
+    Raises `SetupError` where one has the wrong type or is out of range.
+    """
+
+    time_step: float | None = None
+    snapshot_interval: float = DEFAULT_SNAPSHOT_INTERVAL
+    diagnostics_interval: float = DEFAULT_DIAGNOSTICS_INTERVAL
+    checkpoint_interval: float = DEFAULT_CHECKPOINT_INTERVAL
+    sampling: Sampling = "point"
+    integrator: Integrator = "rk4"
+    anticipation: float = 0.0
+    dissipation: float = 0.0
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if name == "time_step" and value is None:
+                continue
+            words = name.replace("_", " ")
+            if name in CHOICES:
+                if not (isinstance(value, str) and value in CHOICES[name]):
+                    raise SetupError(f"the {words} is {value!r}; it must be {' or '.join(map(repr, CHOICES[name]))}")
+                object.__setattr__(self, name, str(value))
+                continue
+            number = plain_number(f"the {words}", value, SetupError)
+            if name in ("anticipation", "dissipation"):
+                if not 0.0 <= number < np.inf:
+                    raise SetupError(f"the {words} is {number:g}; it must be a finite number, and not negative")
+            elif not 0.0 < number < np.inf:
+                raise SetupError(f"the {words} is {number:g} s; it must be positive and finite")
+            object.__setattr__(self, name, number)
+
+    def require_suitable(self, case_name: str, prescribed_wind: bool) -> None:
+        """Raise `SetupError` where options do not go with the case."""
+        if prescribed_wind and (self.integrator != "rk4" or self.anticipation > 0.0 or self.dissipation > 0.0):
+            raise SetupError(
+                f"the wind of {case_name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
+            )
+
+    def with_time_step(self, time_step: float) -> Configuration:
+        """What determines the run, once it has a time step."""
+        return Configuration(
+            time_step,
+            self.snapshot_interval,
+            self.diagnostics_interval,
+            self.sampling,
+            self.integrator,
+            self.anticipation,
+            self.dissipation,
+        )

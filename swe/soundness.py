@@ -1,0 +1,75 @@
+"""What is wrong with a state, in words: thickness and velocity, and thickness at the vertices of obtuse triangles.
+
+The kites of an obtuse triangle have signs, so that thickness at its vertex, their mean, is outside of what the three
+cells have, and may turn negative where all of them are positive.
+"""
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.state import State
+
+THIN = 0.5
+"""Thickness at a vertex below this part of that of the thinnest of its cells is told of before a run."""
+
+
+def problem_with_state(mesh: VoronoiMesh, state: State) -> str | None:
+    """What is wrong with `state`, as the end of a sentence; None if nothing is."""
+    h, u = state.thickness, state.normal_velocity
+    if not np.isfinite(u.sum()):
+        edge = int(np.argmax(~np.isfinite(u)))
+        return f"normal velocity is {u[edge]:g} m/s at edge {edge} (counted from 0)"
+    if h.min() > 0.0 and np.isfinite(h.max()):
+        return None
+    cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
+    return (
+        f"thickness is {h[cell]:g} m in cell {cell} (counted from 0) {_place(mesh.lon_cell[cell], mesh.lat_cell[cell])}"
+    )
+
+
+def has_negative_kites(mesh: VoronoiMesh) -> bool:
+    """Whether thickness at a vertex may be outside of what its cells have."""
+    return bool(mesh.kite_areas_on_vertex.min() < 0.0)
+
+
+def problem_at_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
+    """Where `thickness` (n_cells,) is not positive at a vertex, in words as above; None where it is not at cells."""
+    if not (thickness.min() > 0.0 and np.isfinite(thickness.max())):
+        return None
+    at_vertices = vertex_thickness(mesh, thickness)
+    wrong = ~(at_vertices > 0.0)
+    if not wrong.any():
+        return None
+    vertex = int(np.argmax(wrong))
+    around = ", ".join(f"{value:g}" for value in thickness[mesh.cells_on_vertex[vertex]])
+    obtuse = int(np.count_nonzero((mesh.kite_areas_on_vertex < 0.0).any(axis=1)))
+    return (
+        f"thickness is {at_vertices[vertex]:g} m at vertex {vertex} (counted from 0) "
+        f"{_place(mesh.lon_vertex[vertex], mesh.lat_vertex[vertex])}, the corner of cells of {around} m: "
+        f"{obtuse} triangles of the mesh are so obtuse that kites are negative; use a mesh without them "
+        "(trisk mesh --well-centred)"
+    )
+
+
+def warning_of_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
+    """What to say of `thickness` that is positive at vertices, but thin at some; None where there is nothing."""
+    around = thickness[mesh.cells_on_vertex].min(axis=1)
+    thin = int(np.count_nonzero(vertex_thickness(mesh, thickness) < THIN * around))
+    if thin == 0:
+        return None
+    vertices = "vertex" if thin == 1 else "vertices"
+    return (
+        f"at {thin} {vertices} of obtuse triangles thickness is less than {THIN:g} of that of the thinnest cell "
+        "around, and may turn negative in the course of the run; a mesh without such triangles (trisk mesh "
+        "--well-centred) would do"
+    )
+
+
+def vertex_thickness(mesh: VoronoiMesh, thickness: Array) -> Array:
+    """Kite-weighted mean of `thickness` (n_cells,) at vertices (n_vertices,), m."""
+    return (mesh.kite_areas_on_vertex * thickness[mesh.cells_on_vertex]).sum(axis=1) / mesh.area_triangle
+
+
+def _place(longitude: float, latitude: float) -> str:
+    return f"at longitude {np.degrees(longitude):.1f} and latitude {np.degrees(latitude):.1f} degrees"
