@@ -1,4 +1,6 @@
-"""Meshes that the tests share, made once a session."""
+"""Meshes and runs that the tests share, made once a session."""
+
+from pathlib import Path
 
 import os
 import signal
@@ -10,7 +12,9 @@ os.environ["NUMBA_NUM_THREADS"] = str(max(2, os.cpu_count() or 1))
 import numpy as np
 import pytest
 
+from cases import Williamson1, Williamson2, Williamson5
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
+from swe import Simulation
 
 
 def random_mesh(cells: int, seed: int) -> VoronoiMesh:
@@ -56,3 +60,52 @@ def any_mesh(request: pytest.FixtureRequest, icosahedral_mesh: VoronoiMesh) -> V
         return stretched_mesh(600)
     grid = np.array([(x, y, z) for x in (-1, 0, 1) for y in (-1, 0, 1) for z in (-1, 0, 1) if x or y or z], float)
     return mesh_from_points(grid)
+
+
+@pytest.fixture(scope="session")
+def small_mesh() -> VoronoiMesh:
+    return scvt_mesh(162)
+
+
+@pytest.fixture(scope="session")
+def mountain_run(small_mesh: VoronoiMesh, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Directory of a run of test case 5 on 162 cells: half a day, snapshots and rows every quarter; do not write to."""
+    directory = tmp_path_factory.mktemp("values") / "mountain"
+    simulation = Simulation(small_mesh, Williamson5(), directory, time_step=1800.0, snapshot_interval=21600.0)
+    simulation.run(days=0.5, progress=False)
+    return directory
+
+
+@pytest.fixture(scope="session")
+def damped_run(small_mesh: VoronoiMesh, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same with anticipation of potential vorticity and with dissipation."""
+    directory = tmp_path_factory.mktemp("values") / "damped"
+    simulation = Simulation(
+        small_mesh,
+        Williamson5(),
+        directory,
+        time_step=1800.0,
+        snapshot_interval=21600.0,
+        anticipation=0.5,
+        dissipation=1e17,
+    )
+    simulation.run(days=0.5, progress=False)
+    return directory
+
+
+@pytest.fixture(scope="session")
+def bell_run(small_mesh: VoronoiMesh, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Directory of a run of test case 1, whose wind is prescribed, on 162 cells for half a day."""
+    directory = tmp_path_factory.mktemp("values") / "bell"
+    simulation = Simulation(small_mesh, Williamson1(), directory, time_step=1800.0, snapshot_interval=21600.0)
+    simulation.run(days=0.5, progress=False)
+    return directory
+
+
+@pytest.fixture(scope="session")
+def steady_run(small_mesh: VoronoiMesh, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Directory of a run of test case 2, whose solution is known, on 162 cells for half a day."""
+    directory = tmp_path_factory.mktemp("values") / "steady"
+    simulation = Simulation(small_mesh, Williamson2(), directory, time_step=1800.0, snapshot_interval=21600.0)
+    simulation.run(days=0.5, progress=False)
+    return directory
