@@ -1,10 +1,9 @@
 """Meshes and runs that the tests share, made once a session."""
 
-from pathlib import Path
-
 import os
 import signal
 from collections.abc import Iterator
+from pathlib import Path
 
 # Tests of threads want two of them on any machine; numba reads this once, as it is imported.
 os.environ["NUMBA_NUM_THREADS"] = str(max(2, os.cpu_count() or 1))

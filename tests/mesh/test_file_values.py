@@ -1,4 +1,4 @@
-"""Every variable of a mesh file: its units and meaning, and its values by textbook formulae from longitude and latitude.
+"""Every variable of a mesh file: units, meaning, and values by textbook formulae from longitude and latitude.
 
 The formulae are others than those of the package: haversines for arcs, l'Huilier's theorem for areas, bearings for
 angles, and for the weights the sum of equation (33) of Thuburn et al. (2009) edge by edge.
@@ -129,7 +129,7 @@ def test_units_dimensions_and_meaning(name: str, paths: dict[float, Path]) -> No
 def test_dimensions_and_attributes(paths: dict[float, Path]) -> None:
     for radius, path in paths.items():
         with netCDF4.Dataset(path) as found:
-            sizes = {name: len(dimension) for name, dimension in found.dimensions.items()}
+            sizes = {name: len(dimension) for name, dimension in found.dimensions.items() if name != "Time"}
             assert sizes == {
                 **{"nCells": 162, "nEdges": 480, "nVertices": 320, "maxEdges": 6, "maxEdges2": 12},
                 **{"TWO": 2, "vertexDegree": 3},

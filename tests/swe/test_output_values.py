@@ -277,12 +277,15 @@ def test_fields_of_the_history_have_their_units(mountain_run: Path) -> None:
             "nVertices": 320,
         }
         assert file.sphere_radius == RADIUS
-        assert set(FIELD_UNITS) == {name for name in file.variables if file[name].dimensions[0] == "Time"} - {"time"}
+        assert set(FIELD_UNITS) == {name for name in file.variables if file[name].dimensions[0] == "Time"} - {
+            "time",
+            "Time",
+        }
 
 
 def test_series_of_the_diagnostics_have_their_units(mountain_run: Path) -> None:
     with netCDF4.Dataset(mountain_run / "diagnostics.nc") as file:
-        assert set(file.variables) == {"time", *SERIES_UNITS}
+        assert set(file.variables) == {"time", "Time", *SERIES_UNITS}
         for name, (units, meaning) in SERIES_UNITS.items():
             assert file[name].dimensions == ("Time",)
             assert file[name].units == units, name
@@ -294,7 +297,8 @@ def test_time_is_in_seconds_since_a_day_that_readers_know(mountain_run: Path, na
     with netCDF4.Dataset(mountain_run / name) as file:
         time = file["time"]
         assert time.units == "seconds since 2000-01-01 00:00:00"
-        assert time.standard_name == "time"
+        assert file["Time"].standard_name == "time"
+        assert file["Time"].units == time.units
         assert time.calendar == "proleptic_gregorian"
         assert time[:].tolist() == [0.0, 21600.0, 43200.0]
         last = netCDF4.num2date(time[-1], time.units, time.calendar)
@@ -345,7 +349,7 @@ def test_record_of_the_run(damped_run: Path) -> None:
 
 def test_checkpoint_holds_the_state_and_what_was_written(mountain_run: Path) -> None:
     paths = sorted(mountain_run.glob("checkpoint.*.npz"))
-    assert [path.name for path in paths] == ["checkpoint.0000000024.npz"]
+    assert [path.name for path in paths] == ["checkpoint.shared.npz"]
     with np.load(paths[-1]) as file, netCDF4.Dataset(mountain_run / "history.nc") as history:
         np.testing.assert_array_equal(file["thickness"], history["thickness"][-1])
         np.testing.assert_array_equal(file["normal_velocity"], history["normal_velocity"][-1])
