@@ -14,6 +14,7 @@ from mesh.generators import DEFAULT_SEED
 from mesh.gridded_density import find_density
 from mesh.metrics import compute_metrics
 from mesh.optimizer import Callback, Limits, ScvtResult
+from mesh.plain import plain_count, plain_number
 from mesh.scvt import Request, generate_scvt
 from mesh.sphere import normalize
 from mesh.topology import build_topology
@@ -108,6 +109,10 @@ def scvt_mesh(
     from the Fibonacci spiral.
     """
     function = find_density(os.fspath(density)) if isinstance(density, str | os.PathLike) else density
+    cells, seed = plain_count("the number of cells", cells), plain_count("the seed", seed)
+    max_iterations = plain_count("the largest number of iterations", max_iterations)
+    if tolerance is not None:
+        tolerance = plain_number("the tolerance", tolerance)
     request = Request(cells, start, method, function, seed)
     limits = default_limits(function, method, tolerance, max_iterations)
     return mesh_of(generate_scvt(request, limits, callback), function)

@@ -15,6 +15,9 @@ import netCDF4
 
 Mode = Literal["r", "r+", "w"]
 
+AnyPath = str | os.PathLike[str]
+"""A path as users give it."""
+
 netcdf_lock = threading.RLock()
 """Held by whoever uses the NetCDF library, which crashes where several threads of a process do so at once."""
 

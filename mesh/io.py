@@ -1,7 +1,6 @@
 """MPAS mesh files, read and written; the only place that knows indices that count from 1."""
 
 import hashlib
-import os
 import warnings
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -15,7 +14,7 @@ from mesh.assembly import assembled_mesh
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
 from mesh.density_record import read_generation, write_generation
 from mesh.errors import MeshError, MeshWarning
-from mesh.files import dataset, written_aside
+from mesh.files import AnyPath, dataset, written_aside
 from mesh.mesh_file import read_content
 from mesh.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.voronoi_mesh import VoronoiMesh
@@ -38,9 +37,7 @@ def mesh_hash(mesh: VoronoiMesh) -> str:
     return digest.hexdigest()
 
 
-def write_mesh(
-    mesh: VoronoiMesh, path: str | os.PathLike[str], history: str = "", file_format: str = "netcdf4"
-) -> None:
+def write_mesh(mesh: VoronoiMesh, path: AnyPath, history: str = "", file_format: str = "netcdf4") -> None:
     """Write an MPAS mesh file (MPAS Mesh Specification 1.0) in one of `FORMATS`.
 
     `history` tells how the mesh was made. Raises `MeshError` where the file cannot be written.
@@ -99,7 +96,7 @@ def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozen
         target[:] = values + 1 if variable.is_index else values
 
 
-def read_mesh(path: str | os.PathLike[str], recompute_metrics: bool = False) -> VoronoiMesh:
+def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
     """Read and validate an MPAS mesh file of any origin: classic, 64-bit or NetCDF-4, of any sphere radius.
 
     Rings in another order are sorted, and what is missing or no step depends on is rebuilt from the generators and

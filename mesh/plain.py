@@ -1,9 +1,11 @@
 """Numbers and paths of any type that means one, as those of Python: options are converted once, at the door."""
 
+import json
 import math
 import os
 from numbers import Real
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +17,12 @@ def plain(value: object) -> object:
     return value.item() if isinstance(value, np.generic | np.ndarray) and value.ndim == 0 else value
 
 
-def recordable(value: object) -> object:
+def recorded(values: object) -> Any:
+    """`values` as a record in JSON gives them back; raise `TypeError` or `ValueError` where it cannot hold them."""
+    return json.loads(json.dumps(values, default=_recordable))
+
+
+def _recordable(value: object) -> object:
     """What JSON can hold instead of a scalar or an array of numpy; raise `TypeError` for anything else."""
     if isinstance(value, np.generic | np.ndarray):
         return value.tolist()

@@ -8,15 +8,16 @@ velocities of a cell's edges: this averages the noise from edge to edge and adds
 at the edges, that is, where it is not a run.
 """
 
+import os
 import warnings
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from pathlib import Path
 
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.files import AnyPath
 from mesh.quadrature import sample_cells
 from postprocess.norms import Norms, scalar_norms, vector_norms
 from postprocess.runs import DAY_TOLERANCE, Run, days_in_words, days_of_both, read_run
@@ -76,12 +77,12 @@ class Comparison:
         return self.entries[0].run.case
 
 
-def compare(directories: Sequence[Path], reference: str = "auto", days: Sequence[float] = ()) -> Comparison:
+def compare(directories: Sequence[AnyPath], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
     """Compare the runs in `directories`; see `compare_runs`."""
     return compare_runs([read_run(directory) for directory in directories], reference, days)
 
 
-def compare_runs(runs: Sequence[Run], reference: str = "auto", days: Sequence[float] = ()) -> Comparison:
+def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
     """Compare runs on `days`, by default on the last that all and the reference have.
 
     `reference` is "auto", "exact", a reference file or a run directory: see `postprocess.solutions.choose_solution`.
@@ -95,7 +96,7 @@ def compare_runs(runs: Sequence[Run], reference: str = "auto", days: Sequence[fl
         for day in days:
             run.require_snapshot(day)
     candidates = list(days) if days else _common_days(runs)
-    solution = choose_solution(reference, runs, candidates, every=bool(days))
+    solution = choose_solution(os.fspath(reference), runs, candidates, every=bool(days))
     if isinstance(solution, RunSolution):
         _require_same_radius(solution.run, runs[0])
     chosen = tuple(sorted(set(days))) if days else (_last_known_day(solution, candidates),)

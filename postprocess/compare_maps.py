@@ -14,6 +14,7 @@ from matplotlib.colors import CenteredNorm, Normalize
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
+from mesh.files import AnyPath
 from postprocess.compare import Comparison, fields_of, fields_on
 from postprocess.folders import prepared_folder
 from postprocess.plots import CENTRAL_LONGITUDE, DOTS_PER_INCH, draw_mollweide_raster
@@ -59,9 +60,9 @@ Values = dict[str, Array]
 """Values (ROWS * COLUMNS,) of each field."""
 
 
-def write_maps(comparison: Comparison, folder: Path) -> list[Path]:
+def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
     """Write maps of all fields and differences on the last day that was compared to `folder`; return their paths."""
-    prepared_folder(folder)
+    folder = prepared_folder(folder)
     day = comparison.days[-1]
     longitude, latitude = mollweide_raster(ROWS, COLUMNS)
     longitude = longitude + CENTRAL_LONGITUDE

@@ -12,6 +12,7 @@ from matplotlib.image import AxesImage
 from matplotlib.patches import Circle, Ellipse, Patch
 
 from mesh.arrays import Array
+from mesh.files import AnyPath
 from mesh.operators import vertex_to_cell
 from mesh.quality import mesh_quality, neighbour_distance_ratio, triangle_quality
 from mesh.sphere import from_lonlat
@@ -36,9 +37,9 @@ ROUND_OFF_FLOOR = 1e-20
 """Changes smaller than this are drawn here, for want of a logarithm of zero."""
 
 
-def plot_run(run: Run, folder: Path) -> list[Path]:
+def plot_run(run: Run, folder: AnyPath) -> list[Path]:
     """Write all figures of `run` to `folder`; return their paths."""
-    prepared_folder(folder)
+    folder = prepared_folder(folder)
     last = run.last_snapshot()
     heading = f"{run.case}, {run.mesh.n_cells} cells, day {last.day:g}"
     figures = {

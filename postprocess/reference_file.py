@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.registry import find_case
 from mesh.arrays import Array
-from mesh.files import dataset, written_aside
+from mesh.files import AnyPath, dataset, written_aside
 from postprocess.harmonics import Coefficients, Harmonics, truncation_of
 from postprocess.reference import MEASURES, Reference
 from postprocess.stored_references import stored_path
@@ -45,9 +45,9 @@ def stored_reference(case: str) -> Reference | None:
     return None if path is None else read_reference(path)
 
 
-def write_reference(reference: Reference, path: Path) -> None:
+def write_reference(reference: Reference, path: AnyPath) -> None:
     """Write `reference`; coefficients are integers times a scale, which readers of NetCDF apply by themselves."""
-    with written_aside(path) as aside, dataset(aside, "w", format="NETCDF4") as file:
+    with written_aside(Path(path)) as aside, dataset(aside, "w", format="NETCDF4") as file:
         n_days, _, n_coefficients = reference.coefficients.shape
         sizes = {
             "day": n_days,
@@ -120,7 +120,7 @@ def _write_variable(
     variable[:] = values
 
 
-def read_reference(path: Path) -> Reference:
+def read_reference(path: AnyPath) -> Reference:
     """Read a reference; raise `SetupError` where the file is none, or is damaged."""
     try:
         with dataset(path) as file:

@@ -9,7 +9,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
-from mesh.files import dataset
+from mesh.files import AnyPath, dataset
 from mesh.io import read_mesh
 from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
@@ -79,8 +79,9 @@ class Run:
         return snapshot
 
 
-def read_run(directory: Path) -> Run:
+def read_run(directory: AnyPath) -> Run:
     """Open a run directory; raise `SetupError` where it holds no run, `MeshError` where its mesh is not valid."""
+    directory = Path(directory)
     try:
         record = load_record(directory)
         series = read_series(directory / DIAGNOSTICS_FILE)

@@ -14,7 +14,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
-from mesh.files import name_in_text
+from mesh.files import AnyPath, name_in_text
 from mesh.moments import mean_spacing
 from postprocess.folders import prepared_folder, require_possible_folder
 from postprocess.harmonics import Harmonics
@@ -72,11 +72,11 @@ def spectra_of(run: Run, day: float) -> Spectra:
     )
 
 
-def write_spectra_of(runs: Sequence[Run], days: Sequence[float], folder: Path) -> list[Path]:
+def write_spectra_of(runs: Sequence[Run], days: Sequence[float], folder: AnyPath) -> list[Path]:
     """Write table and figure of the spectra of `runs` on `days`, by default the last; return their paths."""
     require_possible_folder(folder)
     spectra = [spectra_of(run, day) for run in runs for day in (days or (float(run.days[-1]),))]
-    prepared_folder(folder)
+    folder = prepared_folder(folder)
     table, picture = folder / "spectra.csv", folder / "spectra.png"
     write_spectra(spectra, table)
     spectra_figure(spectra).savefig(picture, dpi=DOTS_PER_INCH)

@@ -1,7 +1,6 @@
 """What studies share: runs that are not run again, tables as CSV, fitted orders."""
 
 import csv
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +12,7 @@ from cases.base import Case
 from mesh.errors import MeshError
 from mesh.files import written_aside
 from mesh.io import mesh_hash
+from mesh.plain import recorded
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs import Run, read_run
 from swe.constants import SECONDS_PER_DAY
@@ -106,7 +106,7 @@ class Task:
             return bool(
                 record["status"] == "completed"
                 and record["case"] == self.case.name
-                and record["parameters"] == json.loads(json.dumps(self.case.parameters()))
+                and record["parameters"] == recorded(self.case.parameters())
                 and record["days"] == self.days
                 and configuration["snapshot_interval"] == self.snapshot_days * SECONDS_PER_DAY
                 and configuration["sampling"] == "point"

@@ -1,7 +1,6 @@
 """What a run leaves in its directory, and how it goes on from there."""
 
 import hashlib
-import json
 import os
 import time as clock
 import warnings
@@ -17,7 +16,7 @@ import numpy as np
 from mesh.errors import MeshError
 from mesh.files import held, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
-from mesh.plain import recordable
+from mesh.plain import recorded
 from swe.budgets import measure_rates
 from swe.checkpoint import (
     PATTERN,
@@ -281,7 +280,7 @@ def _description(simulation: "Simulation") -> dict[str, object]:
     """What a run must have in common with the one that it goes on from, as the record has it."""
     parameters = simulation.case.parameters()
     try:
-        recorded = json.loads(json.dumps(parameters, default=recordable))
+        as_recorded = recorded(parameters)
     except (TypeError, ValueError, RecursionError) as error:
         raise SetupError(
             f"the parameters of {simulation.case.name} cannot be recorded ({error}); give numbers, words, or lists of "
@@ -290,7 +289,7 @@ def _description(simulation: "Simulation") -> dict[str, object]:
     return {
         "mesh_hash": mesh_hash(simulation.mesh),
         "case": simulation.case.name,
-        "parameters": recorded,
+        "parameters": as_recorded,
         "configuration": asdict(simulation.configuration),
         "start_hash": _start_hash(simulation),
     }
