@@ -60,10 +60,22 @@ class Mutation:
         """What tells it from all others."""
         return f"{self.path}:{self.line}:{self.start}-{self.stop}:{self.new}"
 
-    def apply(self, root: Path) -> None:
-        """Write the file with the fault below another root."""
+    def mutant(self, root: Path) -> bytes:
+        """The source with the fault."""
         source = (root / self.path).read_bytes()
-        (root / self.path).write_bytes(source[: self.start] + self.new.encode() + source[self.stop :])
+        return source[: self.start] + self.new.encode() + source[self.stop :]
+
+    def apply(self, root: Path) -> None:
+        """Write the fault into the file below `root`."""
+        (root / self.path).write_bytes(self.mutant(root))
+
+    def is_python(self, root: Path) -> bool:
+        """Whether the source with the fault can be compiled."""
+        try:
+            compile(self.mutant(root), self.path, "exec")
+        except (SyntaxError, ValueError):
+            return False
+        return True
 
     def shown(self, root: Path) -> str:
         """The line before and after, as one line of text."""
@@ -80,27 +92,19 @@ def draw(root: Path, count: int, seed: int) -> list[Mutation]:
         for mutation in mutations(path.relative_to(root).as_posix(), path.read_bytes()):
             by_kind.setdefault(mutation.kind, []).append(mutation)
     generator, chosen = random.Random(seed), []
-    while len(chosen) < count and by_kind:
-        kind = generator.choice(sorted(by_kind))
-        chosen.append(by_kind[kind].pop(generator.randrange(len(by_kind[kind]))))
-        if not by_kind[kind]:
-            del by_kind[kind]
+    while len(chosen) < count:
+        of_kind = by_kind[generator.choice(sorted(by_kind))]
+        mutation = of_kind.pop(generator.randrange(len(of_kind)))
+        if mutation.is_python(root):
+            chosen.append(mutation)
     return chosen
 
 
 def mutations(path: str, source: bytes) -> list[Mutation]:
-    """All mutations of one file that are Python."""
+    """All mutations of one file."""
     finder = _Finder(path, source)
     finder.visit(ast.parse(source))
-    return [mutation for mutation in finder.found if _is_python(mutation, source)]
-
-
-def _is_python(mutation: Mutation, source: bytes) -> bool:
-    try:
-        compile(source[: mutation.start] + mutation.new.encode() + source[mutation.stop :], "mutant", "exec")
-    except (SyntaxError, ValueError):
-        return False
-    return True
+    return finder.found
 
 
 class _Finder(ast.NodeVisitor):
