@@ -101,14 +101,15 @@ def differences(found: Any, stored: Any, where: str = "") -> list[str]:
             for line in differences(one, other, f"{where}[{number}]")
         ]
     if _is_number(found) and _is_number(stored):
-        close = abs(found - stored) <= TOLERANCE * max(abs(found), abs(stored), SMALLEST)
+        size = max(abs(found), abs(stored))
+        close = size < SMALLEST or abs(found - stored) <= TOLERANCE * size
         return [] if close else [f"{where}: {found!r} instead of {stored!r}"]
     return [] if found == stored else [f"{where}: {found!r} instead of {stored!r}"]
 
 
 TOLERANCE = 1e-5
-SMALLEST = 1e-9
-"""Numbers below this are round-off, and only that they are small is compared."""
+SMALLEST = 2e-8
+"""Numbers below this are round-off or what convergence leaves; that they are small is all that is compared."""
 
 
 def _is_list(value: Any) -> bool:

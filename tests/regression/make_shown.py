@@ -24,6 +24,7 @@ from rich.console import Console
 
 from cases import CASES, Galewsky, Williamson2, Williamson5, find_case
 from mesh import mesh_from_points, mesh_quality, scvt_mesh
+from mesh.generators import fibonacci_points
 from mesh.optimizer import History
 from postprocess import mesh_report, study_report
 from postprocess.compare import compare_runs, comparison_record
@@ -96,7 +97,7 @@ def shown(folder: Path) -> dict[str, Any]:
 
 
 def _runs(found: Shown) -> None:
-    for name, mesh in (("icosahedral", scvt_mesh(162)), ("spiral", scvt_mesh(120, start="fibonacci", tolerance=1e-6))):
+    for name, mesh in (("icosahedral", scvt_mesh(162)), ("spiral", mesh_from_points(fibonacci_points(120)))):
         Simulation(mesh, Williamson5(), name, time_step=3600.0, dissipation=1e15).run(1.0, progress=False)
     runs = [read_run("icosahedral"), read_run("spiral")]
     with found.figures("run"):
