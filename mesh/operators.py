@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
 from mesh.arrays import Array, Index
@@ -94,13 +95,45 @@ def _perp(mesh: VoronoiMesh) -> csr_array:
     return csr_array(coo_array((values, (row, columns)), shape=(mesh.n_edges, mesh.n_edges)))
 
 
+VANISHING = 1e-9
+"""Edges shorter than this part of the distance of their cells have no length but for round-off."""
+
+
+def vanishing_edges(mesh: VoronoiMesh) -> Index:
+    """Edges without length: their two triangles have one circumcircle, as the halves of a square do."""
+    return np.flatnonzero(mesh.dv_edge <= VANISHING * mesh.dc_edge)
+
+
 def normal_velocity_from_streamfunction(mesh: VoronoiMesh, streamfunction: Array) -> Array:
     """Normal component of k x grad(psi) at edges (n_edges,), from psi at vertices (n_vertices,).
 
-    Minus the difference of psi along the tangent over `dv_edge`; its discrete divergence vanishes to round-off.
+    Minus the difference of psi along the tangent over `dv_edge`; its discrete divergence vanishes to round-off. Edges
+    without length get the velocity that the other edges of their two cells have by least squares.
     """
     tail, head = mesh.vertices_on_edge.T
-    return -(streamfunction[head] - streamfunction[tail]) / mesh.dv_edge
+    none = vanishing_edges(mesh)
+    length = mesh.dv_edge.copy()
+    length[none] = np.inf
+    velocity = -(streamfunction[head] - streamfunction[tail]) / length
+    for edge in none:
+        velocity[edge] = _velocity_of_neighbours(mesh, velocity, np.isfinite(length), edge)
+    return velocity
+
+
+def _velocity_of_neighbours(mesh: VoronoiMesh, velocity: Array, known: NDArray[np.bool_], edge: int) -> float:
+    """The velocity along the normal of an edge, the mean of those of its two cells by least squares."""
+    centers = mesh.cell_points / mesh.sphere_radius
+    normals = centers[mesh.cells_on_edge[:, 1]] - centers[mesh.cells_on_edge[:, 0]]
+    of_cells = []
+    for cell in mesh.cells_on_edge[edge]:
+        edges = mesh.edges_on_cell[cell, : mesh.n_edges_on_cell[cell]]
+        edges = edges[known[edges]]
+        units = normals[edges] / np.linalg.norm(normals[edges], axis=1)[:, None]
+        # The point itself, along which nothing moves, makes the solution one in the tangent plane.
+        rows, values = np.vstack([units, centers[cell]]), np.append(velocity[edges], 0.0)
+        of_cells.append(np.linalg.lstsq(rows, values, rcond=None)[0])
+    unit = normals[edge] / np.linalg.norm(normals[edge])
+    return float(np.mean(of_cells, axis=0) @ unit)
 
 
 def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array, Array]:

@@ -5,8 +5,10 @@ from typing import Literal, get_args
 
 import numpy as np
 
+from mesh.operators import vanishing_edges
 from mesh.plain import plain_number
 from mesh.quadrature import Sampling
+from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
 
@@ -73,6 +75,16 @@ class Options:
         if prescribed_wind and (self.integrator != "rk4" or self.anticipation > 0.0 or self.dissipation > 0.0):
             raise SetupError(
                 f"the wind of {case_name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
+            )
+
+    def require_suitable_mesh(self, mesh: VoronoiMesh) -> None:
+        """Raise `SetupError` where a term divides by the length of edges that have none."""
+        none = vanishing_edges(mesh)
+        if len(none) and (self.anticipation > 0.0 or self.dissipation > 0.0):
+            raise SetupError(
+                f"edges of the mesh have no length ({len(none)}, the first of them {none[0]}, counted from 0), as four "
+                "generators lie on one circle, and anticipation and dissipation divide by it; leave them out, or make "
+                "another mesh"
             )
 
     def with_time_step(self, time_step: float) -> Configuration:

@@ -152,6 +152,7 @@ class Simulation:
         directory = None if output is None else plain_path("output", output, SetupError)
         self.case = case
         self.mesh = mesh.scaled(case.radius)
+        options.require_suitable_mesh(self.mesh)
         topography = _asked(case, case.topography_on, self.mesh, options.sampling)
         coriolis = _asked(case, case.coriolis_on, self.mesh)
         self.model = ShallowWaterModel(self.mesh, topography, coriolis, case.gravity, case.prescribed_wind)
