@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mesh import VoronoiMesh, write_mesh
+from mesh import VoronoiMesh, read_mesh, write_mesh
 
 COMMAND = [sys.executable, "-m", "trisk"]
 
@@ -28,6 +28,15 @@ def test_a_full_output(mesh_file: Path, command: list[str]) -> None:
         told = "error: the output cannot be written (No space left on device); send it elsewhere, or make room\n"
         assert done.stderr == told
         assert subprocess.run([*COMMAND, "quality", "none.nc"], stderr=full).returncode == 2
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+def test_a_full_error_output_does_not_stop_the_work(tmp_path: Path) -> None:
+    """The bar of progress is drawn there."""
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*COMMAND, "mesh", "--cells", "42", "-o", tmp_path / "new.nc"], stderr=full)
+    assert done.returncode == 0
+    assert read_mesh(tmp_path / "new.nc").n_cells == 42
 
 
 def test_a_closed_pipe_ends_quietly(mesh_file: Path) -> None:
