@@ -56,3 +56,12 @@ def test_names_that_are_no_text(mesh_file: Path, tmp_path: Path) -> None:
     missing = subprocess.run([*COMMAND, "quality", name + b".nc"], capture_output=True, text=True)
     assert missing.returncode == 2
     assert missing.stderr.endswith("run_\\udcff.nc: no such file; give an MPAS mesh file\n")
+
+
+def test_a_run_behind_a_link_that_leads_to_nothing_yet(mesh_file: Path, tmp_path: Path) -> None:
+    link, target = tmp_path / "link", tmp_path / "target"
+    link.symlink_to(target)
+    run = [*COMMAND, "run", "williamson2", "--mesh", mesh_file, "--days", "0.05", "-q", "-o", link]
+    assert subprocess.run(run).returncode == 0
+    assert link.is_symlink()
+    assert (target / "run.json").is_file()
