@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from mesh.files import AnyPath
+from mesh.files import AnyPath, place_of
 from swe.errors import SetupError
 
 
@@ -24,7 +24,7 @@ def prepared_folder(path: AnyPath) -> Path:
     path = Path(path)
     require_possible_folder(path)
     try:
-        path.mkdir(parents=True, exist_ok=True)
+        place_of(path).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise SetupError(f"{path} cannot be made ({error.strerror}); choose another place") from error
     return path

@@ -6,6 +6,7 @@ from mesh.density import NAMED
 from mesh.nested import nested_scvt
 from mesh.optimizer import Limits
 from mesh.scvt import Request, generate_scvt
+from postprocess.folders import prepared_folder
 from postprocess.mesh_report import (
     CIRCLE_CELLS,
     PUBLISHED_CIRCLE,
@@ -54,7 +55,7 @@ def nested_meshes(tell: Tell) -> list[Start]:
 
 def write_page(folder: Path, rows: list[Row], tell: Tell) -> Path:
     """Make everything but Table 1, whose `rows` are given, and write page and figures to `folder`."""
-    folder.mkdir(parents=True, exist_ok=True)
+    prepared_folder(folder)
     circles = circle_meshes(VARIABLE_TOLERANCE, tell)
     nested = nested_meshes(tell)
     random = random_meshes(UNIFORM_TOLERANCE, tell)

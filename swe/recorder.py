@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from mesh.errors import MeshError
-from mesh.files import held, remove_leftovers
+from mesh.files import held, place_of, remove_leftovers
 from mesh.io import mesh_hash, write_mesh
 from mesh.plain import recorded
 from swe.budgets import measure_rates
@@ -183,7 +183,7 @@ class Recorder:
 
     def _make_directory(self) -> None:
         try:
-            self.directory.mkdir(parents=True, exist_ok=True)
+            place_of(self.directory).mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise SetupError(
                 f"{self.directory} cannot be made ({error.strerror or error}); choose another directory"

@@ -12,12 +12,13 @@ import warnings
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TextIO, cast
 
 import typer
 
 from trisk import study
 from trisk.options import CaseName, Quiet, Recompute, Settings
+from trisk.streams import ErrorOutput
 
 app = typer.Typer(
     help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
@@ -421,6 +422,8 @@ def main() -> None:
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # names of files may hold any bytes
+    if sys.stderr is not None:
+        sys.stderr = cast(TextIO, ErrorOutput(sys.stderr))
     try:
         _call_app()
     except BrokenPipeError:
@@ -429,8 +432,7 @@ def main() -> None:
         code = _exit_code(error)
         if code is None:
             raise
-        with suppress(OSError):  # nobody can be told where the error output is full
-            typer.echo(f"error: {_in_one_line(error)}", err=True)
+        typer.echo(f"error: {_in_one_line(error)}", err=True)
         sys.exit(code)
 
 

@@ -32,7 +32,15 @@ def test_folder_that_is_read_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatc
         prepared_folder(tmp_path / "below")
 
 
-def test_folder_that_cannot_be_made_after_all(tmp_path: Path) -> None:
-    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(SetupError, match=r"link cannot be made \(File exists\); choose another place"):
+def test_folder_behind_a_link_that_leads_to_nothing_yet(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "target")
+    assert prepared_folder(tmp_path / "link") == tmp_path / "link"
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "target").is_dir()
+
+
+def test_folder_behind_links_that_go_round(tmp_path: Path) -> None:
+    (tmp_path / "link").symlink_to(tmp_path / "other")
+    (tmp_path / "other").symlink_to(tmp_path / "link")
+    with pytest.raises(SetupError, match=r"link cannot be made \(Too many levels .*\); choose another place"):
         prepared_folder(tmp_path / "link")

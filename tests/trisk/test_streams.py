@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from mesh import VoronoiMesh, write_mesh
+from mesh import VoronoiMesh, read_mesh, write_mesh
 
 COMMAND = [sys.executable, "-m", "trisk"]
 
@@ -30,6 +30,15 @@ def test_a_full_output(mesh_file: Path, command: list[str]) -> None:
         assert subprocess.run([*COMMAND, "quality", "none.nc"], stderr=full).returncode == 2
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
+def test_a_full_error_output_does_not_stop_the_work(tmp_path: Path) -> None:
+    """The bar of progress is drawn there."""
+    with open("/dev/full", "w") as full:
+        done = subprocess.run([*COMMAND, "mesh", "--cells", "42", "-o", tmp_path / "new.nc"], stderr=full)
+    assert done.returncode == 0
+    assert read_mesh(tmp_path / "new.nc").n_cells == 42
+
+
 def test_a_closed_pipe_ends_quietly(mesh_file: Path) -> None:
     reader, writer = os.pipe()
     os.close(reader)
@@ -47,3 +56,12 @@ def test_names_that_are_no_text(mesh_file: Path, tmp_path: Path) -> None:
     missing = subprocess.run([*COMMAND, "quality", name + b".nc"], capture_output=True, text=True)
     assert missing.returncode == 2
     assert missing.stderr.endswith("run_\\udcff.nc: no such file; give an MPAS mesh file\n")
+
+
+def test_a_run_behind_a_link_that_leads_to_nothing_yet(mesh_file: Path, tmp_path: Path) -> None:
+    link, target = tmp_path / "link", tmp_path / "target"
+    link.symlink_to(target)
+    run = [*COMMAND, "run", "williamson2", "--mesh", mesh_file, "--days", "0.05", "-q", "-o", link]
+    assert subprocess.run(run).returncode == 0
+    assert link.is_symlink()
+    assert (target / "run.json").is_file()
