@@ -21,10 +21,10 @@ runs/mesh.%.nc: | $(VENV)/installed
 	$(BIN)/trisk mesh --cells $* -o $@
 
 test: $(VENV)/installed-dev  ## The quick tests, in some minutes
-	$(BIN)/python -m pytest -m "not slow" -n 2
+	$(BIN)/python -m pytest -m "not slow" -n 2 --dist loadfile
 
 test-all: test  ## The slow tests too
-	$(BIN)/python -m pytest -m slow -n 2
+	$(BIN)/python -m pytest -m slow -n 2 --dist loadfile
 
 mutants: $(VENV)/installed-dev  ## How many small faults the quick tests notice; hours, and goes on where it stopped
 	$(BIN)/python tests/mutation/mutants.py runs/mutants --count $(MUTANTS) --seed $(SEED)

@@ -8,6 +8,7 @@ from density_files import EAST, NORTH, field, write_file
 from mesh import MeshError, MeshWarning, scvt_mesh
 from mesh.density import Density
 from mesh.generators import fibonacci_points
+from mesh.grid_interpolation import _smooth_grid
 from mesh.gridded_density import Shaping, read_density
 from mesh.sphere import from_lonlat, to_lonlat
 
@@ -370,3 +371,30 @@ def test_coordinates_of_one_and_two_dimensions_are_refused(tmp_path: Path) -> No
     )
     with pytest.raises(MeshError, match=r"lat has dimensions \('y', 'x'\) and lon has \('x',\); both must have one"):
         read_density(path)
+
+
+def test_smoothing_is_a_mean_with_neighbours_and_ends_at_edges() -> None:
+    """A spike on a grid of the globe spreads over the meridian; beside the edge of a part of it, onto the edge."""
+    values = np.zeros((3, 4))
+    values[1, 0] = 8.0
+    expected = np.array([[1.0, 0.0, 0.0, 0.0], [4.0, 1.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0]])
+    np.testing.assert_array_equal(_smooth_grid(values, "wrap"), expected)
+    expected[1] = [5.0, 1.0, 0.0, 0.0]
+    np.testing.assert_array_equal(_smooth_grid(values, "edge"), expected)
+
+
+def test_a_part_of_the_globe_is_smoothed_within_itself(tmp_path: Path) -> None:
+    """The western edge keeps out what stands at the eastern one."""
+    latitude, longitude = np.linspace(-20.0, 20.0, 9), np.linspace(10.0, 50.0, 9)
+    values = np.ones((9, 9))
+    values[:, -1] = 5.0
+    path = write_file(
+        tmp_path / "part.nc",
+        lat=(("lat",), latitude, NORTH),
+        lon=(("lon",), longitude, EAST),
+        density=(("lat", "lon"), values, {}),
+    )
+    with pytest.warns(MeshWarning):
+        density = read_density(path, shaping=Shaping(smoothing=1))
+    points = from_lonlat(np.radians([10.0, 50.0, 45.0]), np.zeros(3))
+    np.testing.assert_allclose(density(points), [1.0, 4.5, 1.5], rtol=1e-10)

@@ -217,3 +217,10 @@ def test_seconds_are_for_all_reseedings_together(seconds: Iterator[int]) -> None
     first = numbers.index(0, 1)
     assert refine(Limits(1e-3, seconds=first + 10.0)) <= first + 20
     assert numbers.count(0) == 2
+
+
+def test_loops_that_wake_the_threads_are_those_that_do_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    expected = scvt_mesh(642, start="fibonacci", tolerance=1e-6)
+    monkeypatch.setattr("mesh.multilevel.SERIAL_LIMIT", 10)
+    found = scvt_mesh(642, start="fibonacci", tolerance=1e-6)
+    np.testing.assert_array_equal(found.cell_points, expected.cell_points)

@@ -33,12 +33,12 @@ QUICK = ["-m", "not slow", "-q", "-p", "no:cacheprovider"]
 class Copy:
     """A copy of the project in which files are broken, with its own compiled functions, and what pytest said last."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, original: Path = ROOT) -> None:
         self.folder, self.cache, self.reach = folder / "project", folder / "compiled", folder / "reach.json"
         self.log = folder / "pytest.log"
         if not self.folder.exists():
             for name in COPIED:
-                source, target = ROOT / name, self.folder / name
+                source, target = original / name, self.folder / name
                 if source.is_dir():
                     shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__", ".hypothesis"))
                 elif source.exists():
@@ -108,25 +108,25 @@ def reach(folder: Path, copies: list[Copy]) -> dict[str, Any]:
     return dict(json.loads(record.read_text()))
 
 
-def importers(module: str) -> set[str]:
-    """Paths of the modules that import from `module`, and its own."""
+def importers(root: Path, module: str) -> set[str]:
+    """Paths of the modules below `root` that import from `module`, and its own."""
     dotted = module.removesuffix(".py").replace("/", ".").removesuffix(".__init__")
     found = {module}
     for package in PACKAGES:
-        for path in (ROOT / package).rglob("*.py"):
+        for path in (root / package).rglob("*.py"):
             for node in ast.walk(ast.parse(path.read_bytes())):
                 names = [node.module] if isinstance(node, ast.ImportFrom) else []
                 names += [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
                 if isinstance(node, ast.ImportFrom):
                     names += [f"{node.module}.{alias.name}" for alias in node.names]
                 if dotted in names:
-                    found.add(path.relative_to(ROOT).as_posix())
+                    found.add(path.relative_to(root).as_posix())
     return found
 
 
-def reaching_tests(mutation: Mutation, known: dict[str, Any]) -> list[str]:
+def reaching_tests(root: Path, mutation: Mutation, known: dict[str, Any]) -> list[str]:
     """Tests that reach a mutation, those of its own module first, then the quickest first."""
-    everywhere = importers(mutation.path) if not mutation.function else set()
+    everywhere = importers(root, mutation.path) if not mutation.function else set()
     numbers = {mutation.line, mutation.statement}
 
     def reaches(context: str) -> bool:
@@ -159,10 +159,10 @@ def report(results: dict[str, dict[str, str]]) -> str:
 
 
 class Survey:
-    """The verdicts of many mutations, kept in a journal from which an interrupted survey goes on."""
+    """The verdicts of many mutations of the project at `root`, kept in a journal from which a survey goes on."""
 
-    def __init__(self, journal: Path, copies: list[Copy], known: dict[str, Any]) -> None:
-        self._journal, self._known, self._workers = journal, known, len(copies)
+    def __init__(self, root: Path, journal: Path, copies: list[Copy], known: dict[str, Any]) -> None:
+        self._root, self._journal, self._known, self._workers = root, journal, known, len(copies)
         self._free: queue.Queue[Copy] = queue.Queue()
         for copy in copies:
             self._free.put(copy)
@@ -181,14 +181,14 @@ class Survey:
                 print(f"{len(self.results)}: {result['verdict']}: {name}: {result['shown']}", flush=True)
 
     def _judge(self, mutation: Mutation) -> tuple[str, dict[str, str]]:
-        tests = reaching_tests(mutation, self._known)
+        tests = reaching_tests(self._root, mutation, self._known)
         seconds = LEAST_SECONDS + PATIENCE * sum(self._known["seconds"].get(test, 0.0) for test in tests)
         copy = self._free.get()
         try:
             verdict = copy.verdict(mutation, tests, seconds)
         finally:
             self._free.put(copy)
-        shown = mutation.shown(ROOT)
+        shown = mutation.shown(self._root)
         return mutation.name, {"path": mutation.path, "kind": mutation.kind, "verdict": verdict, "shown": shown}
 
 
@@ -201,9 +201,10 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     folder = options.folder.resolve()
-    copies = [Copy(folder / f"copy-{number}") for number in range(options.workers)]
-    survey = Survey(folder / f"seed-{options.seed}.jsonl", copies, reach(folder, copies))
-    survey.judge_all(draw(ROOT, options.count, options.seed))
+    drawn_from = Copy(folder / "original").folder  # stays as it is, whatever happens to the project meanwhile
+    copies = [Copy(folder / f"copy-{number}", drawn_from) for number in range(options.workers)]
+    survey = Survey(drawn_from, folder / f"seed-{options.seed}.jsonl", copies, reach(folder, copies))
+    survey.judge_all(draw(drawn_from, options.count, options.seed))
     print(report(survey.results))
 
 

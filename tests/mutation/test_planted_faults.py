@@ -76,13 +76,13 @@ def test_tests_that_reach_a_line_are_found() -> None:
             "test_d.py::four": {"a.py": [7]},
         },
     }
-    assert reaching_tests(inside, known) == ["test_a.py::two", "test_c.py::three", "test_b.py::one"]
+    assert reaching_tests(ROOT, inside, known) == ["test_a.py::two", "test_c.py::three", "test_b.py::one"]
     at_import = next(mutation for mutation in mutations("a.py", SOURCE) if mutation.line == 3)
-    assert "test_d.py::four" in reaching_tests(at_import, known)
+    assert "test_d.py::four" in reaching_tests(ROOT, at_import, known)
 
 
 def test_importers_are_found() -> None:
-    found = importers("mesh/sphere.py")
+    found = importers(ROOT, "mesh/sphere.py")
     assert found >= {"mesh/sphere.py", "mesh/metrics.py", "mesh/density.py"}
     assert "mesh/arrays.py" not in found
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from mesh.density import NAMED
+from mesh.optimizer import Limits
 from mesh.scvt import Request
-from postprocess import mesh_report
+from postprocess import mesh_page, mesh_report
 from postprocess.mesh_report import Start, converge_from, distribution_figure, sizes_figure, starts_lines, table1_lines
 from postprocess.table1 import PUBLISHED_SCVT, Row, measures, table1
 from swe.errors import SetupError
@@ -57,3 +58,43 @@ def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> Non
     left, right = sizes_figure({"one": meshes[0].mesh}).axes
     assert left.get_lines()[0].get_ydata()[0] < left.get_lines()[0].get_ydata()[-1]
     assert np.mean(right.get_lines()[0].get_ydata()) == pytest.approx(1.0)
+
+
+def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The page on mesh generation, of few and small meshes."""
+    small = {"CIRCLE_CELLS": 200, "RANDOM_CELLS": 162, "OPTIMIZER_CELLS": 162, "RANDOM_SEEDS": range(1)}
+    small |= {"SHAKEN_SEEDS": range(1), "STARTS": [("fibonacci", 0)]}
+    small["OPTIMIZER_LIMITS"] = {"lbfgs": Limits(1e-4), "multilevel": Limits(1e-4), "lloyd": Limits(1e-8, 3)}
+    for module in (mesh_report, mesh_page):
+        for name, value in small.items():
+            if hasattr(module, name):
+                monkeypatch.setattr(module, name, value)
+    monkeypatch.setattr(mesh_page, "COARSE_CELLS", 162)
+    monkeypatch.setattr(mesh_page, "NESTED_CELLS", 300)
+    monkeypatch.setattr(mesh_page, "VARIABLE_TOLERANCE", 1e-2)
+    monkeypatch.setattr(mesh_page, "NESTED_STARTS", (("icosahedral", 0), ("fibonacci", 1)))
+    told: list[str] = []
+    text = mesh_page.write_page(tmp_path, rows, told.append).read_text()
+    assert [line for line in text.splitlines() if line.startswith("#")] == [
+        "# Mesh generation: quality and convergence",
+        "## Table 1, ours and published",
+        "## Variable resolution",
+        "## Random starts and the icosahedron",
+        "## Optimisers",
+    ]
+    for name in ("meshes", "sizes", "refined-circle-starts", "nested-starts", "optimizers"):
+        assert f"![{name.replace('-', ' ')}]({name}.png)" in text
+        assert (tmp_path / f"{name}.png").stat().st_size > 3000
+    assert "--max-level 5 -o FOLDER" in text
+    assert "5.7079, 0.9006, 0.4012, 0.9904, 0.7114" in text
+    tables = [line for line in text.splitlines() if line.startswith(("| icosahedral", "| fibonacci", "| random"))]
+    assert [line.split("|")[1].strip() for line in tables] == [
+        *("fibonacci", "icosahedral", "fibonacci", "icosahedral", "icosahedral, shaken", "random"),
+    ]
+    assert "| fibonacci | 1 |" in text
+    assert told[0].startswith("refined-circle from fibonacci 0: ")
+    assert told[1].startswith("nested mesh from icosahedral 0: least q 0.")
+    assert told[2].startswith("nested mesh from fibonacci 1: least q 0.")
+    assert told[3] == "162 cells, icosahedral 0: 0 dislocations"
+    assert told[-1].startswith("lloyd: residual ")
+    assert told[-1].endswith(" after 3 iterations")

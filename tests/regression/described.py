@@ -37,8 +37,13 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
         "texts": [[text.get_text(), *text.get_position(), text.get_ha(), text.get_va()] for text in axes.texts],
         "bars": _summary([patch.get_height() for patch in axes.patches if hasattr(patch, "get_height")]),
         "legend": None if legend is None else _of_legend(legend),
+        "sizes": [axes.title.get_size(), axes.xaxis.label.get_size(), *_tick_sizes(axes)],
         "ticks": [label.get_text() for label in axes.get_xticklabels()] if axes.get_xscale() == "linear" else [],
     }
+
+
+def _tick_sizes(axes: Axes) -> list[float]:
+    return [labels[0].get_size() for labels in (axes.get_xticklabels(), axes.get_yticklabels()) if labels]
 
 
 def _of_legend(legend: Legend) -> list[str]:
