@@ -97,8 +97,8 @@ local minima:
 {save(distribution_figure(circles, PUBLISHED_CIRCLE, "Refined-circle over starts"), folder, "refined-circle-starts")}
 
 Nested, equation (13), {NESTED_CELLS} cells, generators beyond the transition held fixed, from converged meshes of
-{COARSE_CELLS} cells with several starts (published: {published}). The residual is that of the generators that were free, which
-are converged to {VARIABLE_TOLERANCE:g}:
+{COARSE_CELLS} cells with several starts (published: {published}). The residual is that of the generators that
+were free, which are converged to {VARIABLE_TOLERANCE:g}:
 
 {chr(10).join(starts_lines(nested))}
 
