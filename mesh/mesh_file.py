@@ -10,6 +10,9 @@ from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
 from mesh.errors import MeshError
 from mesh.topology import FILL
 
+SIZES = {"two": 2, "vertex_degree": 3}
+"""Of dimensions that have one size in all meshes."""
+
 LARGEST_INDEX = np.iinfo(np.int32).max - 1
 
 SPARE = frozenset(
@@ -81,6 +84,9 @@ def _problem(source: netCDF4.Variable, variable: MeshVariable) -> str:
     expected = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
     if source.dimensions != expected:
         return f"has dimensions {source.dimensions} instead of {expected}"
+    for name, size in zip(variable.dimensions, source.shape, strict=True):
+        if size != SIZES.get(name, size):
+            return f"has a dimension {DIMENSIONS[name]} of {size} instead of {SIZES[name]}"
     if source.dtype is str or source.dtype.kind not in "iuf":
         return f"holds {source.dtype} instead of numbers"
     return ""

@@ -297,6 +297,18 @@ def test_coordinates_on_no_sphere_are_refused(mesh_file: Path) -> None:
         read_mesh(mesh_file)
 
 
+def test_a_triangle_has_three_corners(mesh_file: Path, tmp_path: Path) -> None:
+    with netCDF4.Dataset(mesh_file) as old, netCDF4.Dataset(tmp_path / "quads.nc", "w") as new:
+        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, 4 if name == "vertexDegree" else len(dimension))
+        for name, variable in old.variables.items():
+            copy = new.createVariable(name, variable.dtype, variable.dimensions)
+            copy[:] = np.resize(variable[:], copy.shape)
+    with pytest.raises(MeshError, match=r"quads\.nc: cellsOnVertex has a dimension vertexDegree of 4 instead of 3$"):
+        read_mesh(tmp_path / "quads.nc")
+
+
 def test_a_plane_is_refused(mesh_file: Path) -> None:
     with netCDF4.Dataset(mesh_file, "r+") as file:
         file.on_a_sphere = "NO"
