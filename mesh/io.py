@@ -9,13 +9,14 @@ from typing import Literal
 
 import netCDF4
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.assembly import assembled_mesh
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
 from mesh.density_record import read_generation, write_generation
 from mesh.errors import MeshError, MeshWarning
 from mesh.files import AnyPath, dataset, written_aside
-from mesh.mesh_file import read_content
+from mesh.mesh_file import FileContent, read_content
 from mesh.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -108,18 +109,13 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
     if path.exists() and not path.is_file():
         raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
     try:
-        with dataset(path) as file:
-            file.set_auto_mask(False)
-            content = read_content(file)
-            name, source, fixed = read_generation(file, content.n_cells)
+        content, generation = _read(path)
         mesh, changes = assembled_mesh(content, recompute_metrics)
-        mesh = replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
         residuals = validate_metrics(mesh, None, OUTSIDE_TOLERANCE)
     except MeshError as error:
         raise MeshError(f"{path}: {error}") from error
-    except (OSError, RuntimeError, IndexError, ValueError) as error:
-        reason = "no such file" if not path.exists() else f"not a readable NetCDF file ({error})"
-        raise MeshError(f"{path}: {reason}; give an MPAS mesh file") from error
+    name, source, fixed = generation
+    mesh = replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
     said = [changes.in_words] if changes.in_words else []
     worst = max(residuals, key=lambda name: residuals[name])
     if residuals[worst] > OWN_TOLERANCE:
@@ -127,3 +123,17 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
     if said:
         warnings.warn(f"{path}: {'; '.join(said)}", MeshWarning, stacklevel=2)
     return mesh
+
+
+def _read(path: Path) -> tuple[FileContent, tuple[str, str, NDArray[np.bool_] | None]]:
+    """What a mesh file holds, and how the mesh was generated."""
+    try:
+        with dataset(path) as file:
+            file.set_auto_mask(False)
+            content = read_content(file)
+            return content, read_generation(file, content.n_cells)
+    except MeshError:
+        raise
+    except (OSError, RuntimeError, IndexError, ValueError) as error:
+        reason = "no such file" if not path.exists() else f"not a readable NetCDF file ({error})"
+        raise MeshError(f"{reason}; give an MPAS mesh file") from error

@@ -39,6 +39,9 @@ ERRORS_OF_PATHS = (
 ERRORS_OF_OUTPUT = (errno.ENOSPC, errno.EPIPE, errno.EIO, errno.EFBIG, errno.EDQUOT, errno.EBADF)
 """What the system says, without the name of a file, where the output takes no more."""
 
+NO_THREADING_LAYER = "threading layer could be loaded"
+"""What numba says where NUMBA_THREADING_LAYER names one that is not installed."""
+
 RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
 """Exit codes; the last is that of shells, to which the number of the signal is added."""
 
@@ -471,7 +474,7 @@ def _exit_code(error: Exception) -> int | None:
 
     if isinstance(error, RunStopped):
         return STOPPED + error.signal
-    if isinstance(error, MeshError | SetupError):
+    if isinstance(error, MeshError | SetupError) or NO_THREADING_LAYER in str(error):
         return BAD_INPUT
     if isinstance(error, RunError | MemoryError):
         return RUN_FAILED

@@ -1,5 +1,6 @@
 """Outputs that are full or closed, and names of files that are no text, from the command line."""
 
+import importlib.util
 import os
 import subprocess
 import sys
@@ -65,3 +66,17 @@ def test_a_run_behind_a_link_that_leads_to_nothing_yet(mesh_file: Path, tmp_path
     assert subprocess.run(run).returncode == 0
     assert link.is_symlink()
     assert (target / "run.json").is_file()
+
+
+def test_a_threading_layer_that_is_not_there(mesh_file: Path) -> None:
+    if importlib.util.find_spec("tbb") is not None:
+        pytest.skip("it is there")
+    done = subprocess.run(
+        [*COMMAND, "quality", str(mesh_file)],
+        env={**os.environ, "NUMBA_THREADING_LAYER": "tbb"},
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: No threading layer could be loaded.")
+    assert len(done.stderr.strip().splitlines()) <= 2
