@@ -77,6 +77,8 @@ def test_tests_that_reach_a_line_are_found() -> None:
         },
     }
     assert reaching_tests(ROOT, inside, known) == ["test_a.py::two", "test_c.py::three", "test_b.py::one"]
+    untraced = {"fixtures": {"test_a.py::five": [], "test_b.py::one": []}, "seconds": {}, "lines": {}}
+    assert reaching_tests(ROOT, inside, untraced) == ["test_a.py::five"]
     at_import = next(mutation for mutation in mutations("a.py", SOURCE) if mutation.line == 3)
     assert "test_d.py::four" in reaching_tests(ROOT, at_import, known)
 
