@@ -8,6 +8,7 @@ import argparse
 import ast
 import concurrent.futures
 import json
+import math
 import os
 import queue
 import shutil
@@ -125,7 +126,7 @@ def importers(root: Path, module: str) -> set[str]:
 
 
 def reaching_tests(root: Path, mutation: Mutation, known: dict[str, Any]) -> list[str]:
-    """Tests that reach a mutation, those of its own module first, then the quickest first."""
+    """Tests that reach a mutation, those of its own module first, then the quickest files first."""
     everywhere = importers(root, mutation.path) if not mutation.function else set()
     numbers = {mutation.line, mutation.statement}
 
@@ -142,7 +143,27 @@ def reaching_tests(root: Path, mutation: Mutation, known: dict[str, Any]) -> lis
     module = f"test_{Path(mutation.path).stem}.py"
     # What only other processes do is not traced; then the tests that are named after the module are asked.
     tests = tests or [test for test in known["fixtures"] if module in test]
-    return sorted(tests, key=lambda test: (module not in test, known["seconds"].get(test, 0.0)))
+    # Tests of one file stay together, as they share what is made for them.
+    of_file = Counter[str]()
+    for test in tests:
+        of_file[file_of(test)] += known["seconds"].get(test, 0.0)
+    return sorted(tests, key=lambda test: (module not in test, of_file[file_of(test)], file_of(test)))
+
+
+def file_of(test: str) -> str:
+    """The file that a test stands in."""
+    return test.split("::")[0]
+
+
+def within(budget: float, tests: list[str], seconds: dict[str, float]) -> list[str]:
+    """The first tests, of which all together take no more than `budget` seconds."""
+    total, chosen = 0.0, []
+    for test in tests:
+        total += seconds.get(test, 0.0)
+        if total > budget:
+            break
+        chosen.append(test)
+    return chosen
 
 
 def report(results: dict[str, dict[str, str]]) -> str:
@@ -163,8 +184,9 @@ def report(results: dict[str, dict[str, str]]) -> str:
 class Survey:
     """The verdicts of many mutations of the project at `root`, kept in a journal from which a survey goes on."""
 
-    def __init__(self, root: Path, journal: Path, copies: list[Copy], known: dict[str, Any]) -> None:
+    def __init__(self, root: Path, journal: Path, copies: list[Copy], known: dict[str, Any], budget: float) -> None:
         self._root, self._journal, self._known, self._workers = root, journal, known, len(copies)
+        self._budget = budget
         self._free: queue.Queue[Copy] = queue.Queue()
         for copy in copies:
             self._free.put(copy)
@@ -183,7 +205,7 @@ class Survey:
                 print(f"{len(self.results)}: {result['verdict']}: {name}: {result['shown']}", flush=True)
 
     def _judge(self, mutation: Mutation) -> tuple[str, dict[str, str]]:
-        tests = reaching_tests(self._root, mutation, self._known)
+        tests = within(self._budget, reaching_tests(self._root, mutation, self._known), self._known["seconds"])
         seconds = LEAST_SECONDS + PATIENCE * sum(self._known["seconds"].get(test, 0.0) for test in tests)
         copy = self._free.get()
         try:
@@ -201,11 +223,12 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--budget", type=float, default=math.inf, help="seconds of tests for each, all by default")
     options = parser.parse_args()
     folder = options.folder.resolve()
     drawn_from = Copy(folder / "original").folder  # stays as it is, whatever happens to the project meanwhile
     copies = [Copy(folder / f"copy-{number}", drawn_from) for number in range(options.workers)]
-    survey = Survey(drawn_from, folder / f"seed-{options.seed}.jsonl", copies, reach(folder, copies))
+    survey = Survey(drawn_from, folder / f"seed-{options.seed}.jsonl", copies, reach(folder, copies), options.budget)
     survey.judge_all(draw(drawn_from, options.count, options.seed))
     print(report(survey.results))
 
