@@ -126,7 +126,7 @@ def importers(root: Path, module: str) -> set[str]:
 
 
 def reaching_tests(root: Path, mutation: Mutation, known: dict[str, Any]) -> list[str]:
-    """Tests that reach a mutation, those of its own module first, then the quickest files first."""
+    """Tests that reach a mutation, those of its own module and package first, then quick files."""
     everywhere = importers(root, mutation.path) if not mutation.function else set()
     numbers = {mutation.line, mutation.statement}
 
@@ -147,7 +147,12 @@ def reaching_tests(root: Path, mutation: Mutation, known: dict[str, Any]) -> lis
     of_file = Counter[str]()
     for test in tests:
         of_file[file_of(test)] += known["seconds"].get(test, 0.0)
-    return sorted(tests, key=lambda test: (module not in test, of_file[file_of(test)], file_of(test)))
+    package = f"tests/{mutation.path.split('/')[0]}/"
+
+    def order(test: str) -> tuple[bool, bool, float, str]:
+        return module not in test, not test.startswith(package), of_file[file_of(test)], file_of(test)
+
+    return sorted(tests, key=order)
 
 
 def file_of(test: str) -> str:
