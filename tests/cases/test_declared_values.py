@@ -5,9 +5,10 @@ import re
 import numpy as np
 import pytest
 
-from cases import CASES
+from cases import CASES, find_case
 from cases.parameters import parameter_meanings
 from swe import constants
+from swe.errors import SetupError
 
 EARTH = {"radius": (6371220.0, "m"), "gravity": (9.80616, "m/s2"), "rotation_rate": (7.292e-5, "1/s")}
 ROTATION = {"wind_speed": (38.61068276698372, "m/s"), "angle": (0.0, "rad")}
@@ -155,3 +156,12 @@ def test_lake_is_level_and_at_rest() -> None:
     assert case.topography(longitude, latitude)[0] > 1800.0
     for values in (*case.velocity(longitude, latitude), case.vorticity(longitude, latitude)):
         assert not values.any()
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter"),
+    [("williamson1", "bell_radius"), ("williamson5", "radius"), ("williamson5", "gravity")],
+)
+def test_nothing_is_not_positive(name: str, parameter: str) -> None:
+    with pytest.raises(SetupError, match=f"^{parameter} is 0; it must be positive$"):
+        find_case(name, {parameter: 0.0})

@@ -50,6 +50,9 @@ def test_of_a_steady_flow_the_reference_is_the_exact_solution() -> None:
 def test_file_keeps_all_but_a_part_of_the_uncertainty(reference: Reference, tmp_path: Path) -> None:
     path = tmp_path / "reference.nc"
     write_reference(reference, path)
+    with netCDF4.Dataset(path) as file:
+        units = {"vorticity": "s-1", "divergence": "s-1", "surface_height": "m"}
+        assert {name: file[name].units for name in units} == units
     read = read_reference(path)
     assert (read.case, read.days, read.truncations) == (reference.case, reference.days, reference.truncations)
     assert (read.history, read.settings) == ("made by a test", reference.settings)

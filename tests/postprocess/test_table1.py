@@ -96,5 +96,7 @@ def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: p
     assert told[1].startswith("nested mesh from icosahedral 0: least q 0.")
     assert told[2].startswith("nested mesh from fibonacci 1: least q 0.")
     assert told[3] == "162 cells, icosahedral 0: 0 dislocations"
-    assert told[-1].startswith("lloyd: residual ")
+    assert "shaken by\n20% of the spacing" in text
+    residuals = {line.split(":")[0]: float(line.split()[2]) for line in told[-3:]}
+    assert max(residuals["lbfgs"], residuals["multilevel"]) < 1e-4 < residuals["lloyd"]
     assert told[-1].endswith(" after 3 iterations")

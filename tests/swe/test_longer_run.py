@@ -1,6 +1,7 @@
 """A run carried on to a later day leaves what one run to that day leaves, byte for byte."""
 
 import json
+import warnings
 from pathlib import Path
 
 import pytest
@@ -23,8 +24,11 @@ def small_mesh() -> VoronoiMesh:
 
 
 def run_to(mesh: VoronoiMesh, folder: Path, days: float, **options: object) -> Simulation:
-    simulation = Simulation(mesh, Williamson5(), folder, resume=True, **{**OPTIONS, **options})
-    simulation.run(days, progress=False)
+    """A run that goes on without a word."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulation = Simulation(mesh, Williamson5(), folder, resume=True, **{**OPTIONS, **options})
+        simulation.run(days, progress=False)
     return simulation
 
 
@@ -120,7 +124,7 @@ def test_without_a_shared_checkpoint_a_longer_run_begins_again(small_mesh: Voron
     (tmp_path / "parts" / "checkpoint.shared.npz").unlink()
     checkpoint_paths(tmp_path / "parts")[0].unlink()
     with pytest.warns(SetupWarning, match="no checkpoint from which a run to day 2 goes on; the run begins again"):
-        run_to(small_mesh, tmp_path / "parts", 2.0)
+        Simulation(small_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(2.0, progress=False)
     assert kept_files(tmp_path / "whole") == kept_files(tmp_path / "parts")
 
 
@@ -133,3 +137,17 @@ def test_last_shared_time() -> None:
     assert shared(2.0) == 0.0
     assert shared(30.0 - 1e-9) == 27.0  # the end that takes the place of the multiple is none
     assert shared(30.0 + 1e-9) == 27.0
+
+
+def test_rows_are_on_the_disk_while_the_run_goes_on(small_mesh: VoronoiMesh, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("swe.output.SECONDS_BETWEEN_WRITES", 0.0)
+    rows: list[int] = []
+    append = DiagnosticsFile.append
+
+    def count(file: DiagnosticsFile, *arguments: object) -> None:
+        append(file, *arguments)
+        rows.append(len(read_series(tmp_path / "diagnostics.nc")["time"]))
+
+    monkeypatch.setattr(DiagnosticsFile, "append", count)
+    run_to(small_mesh, tmp_path, 0.5)
+    assert rows == [1, 2, 3, 4, 5]

@@ -28,6 +28,8 @@ def test_study_of_time_steps(trisk: Call, tmp_path: Path) -> None:
     code, out, err = trisk("study", "time", "williamson5", *options, "-o", tmp_path / "study")
     assert (code, out, err) == (0, "", "")
     assert "1800" in (tmp_path / "study" / "study.csv").read_text()
+    code, out, _ = trisk("study", "time", "williamson5", *options[:-1], "-o", tmp_path / "study")
+    assert (code, out) == (0, f"{tmp_path / 'study' / 'report.html'}\n")
 
 
 @pytest.mark.parametrize(
