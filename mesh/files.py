@@ -109,11 +109,13 @@ def written_aside(path: Path) -> Iterator[Path]:
     """Give a temporary path beside `path`; rename it to `path` at the end, or remove it if an exception leaves.
 
     Symbolic links stay, and a file that is replaced passes its permissions on. Raises `FileExistsError` where `path`
-    is something other than a file, such as a device.
+    is something other than a file, such as a device, and `FileNotFoundError` where it has no folder.
     """
     if path.exists() and not path.is_file():
         raise FileExistsError(errno.EEXIST, "there is something that is no file", str(path))
     path = place_of(path)
+    if not path.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(path))
     aside = path.with_name(f".{path.name}.{uuid.uuid4().hex[:8]}.part")
     try:
         yield aside

@@ -131,7 +131,7 @@ def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:
     if not state.thickness.min() > 0.0:
         raise ValueError("its thickness is not positive")
     if counts.shape != (len(COUNTS),) or counts.dtype != np.int64 or counts.min() < 1:
-        raise ValueError("its counts are none")
+        raise ValueError("its counts are no positive whole numbers")
     if time.shape != () or time.dtype != np.float64 or not 0.0 < time < np.inf:
-        raise ValueError("its time is none")
+        raise ValueError("its time is not a positive number of seconds")
     return Checkpoint(state, float(time), **dict(zip(COUNTS, counts.tolist(), strict=True)))

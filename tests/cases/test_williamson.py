@@ -115,5 +115,5 @@ def test_rossby_haurwitz_wave_has_four_crests() -> None:
         case.thickness(longitude + np.pi / 2, latitude), case.thickness(longitude, latitude), rtol=1e-13
     )
     assert np.abs(case.thickness(longitude + np.pi / 4, latitude) - case.thickness(longitude, latitude)).max() > 500.0
-    with pytest.raises(SetupError, match="wave_number is 0"):
+    with pytest.raises(SetupError, match="wave_number is 0; it must be 1 to 200"):
         replace(case, wave_number=0)

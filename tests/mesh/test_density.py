@@ -35,6 +35,9 @@ def test_named_densities_have_their_published_shape() -> None:
     assert box(at(10, 20))[0] == 1.0
     smooth = SmoothTransition()
     assert smooth(at(270, 30))[0] / smooth(at(90, -30))[0] == pytest.approx(81.0, rel=0.03)
+    # One scale of the transition beyond the circle, the width is 1 + 2 (1 + tanh 1) / 2.
+    width = smooth(at(270, 30 + 30 + 9))[0] ** -0.25
+    assert width == pytest.approx(2.0 + np.tanh(1.0), rel=1e-12)
 
 
 def test_circle_is_whole_where_it_crosses_the_prime_meridian() -> None:
@@ -118,7 +121,7 @@ def test_random_points_follow_the_density() -> None:
 
 
 def test_density_that_vanishes_cannot_be_sampled() -> None:
-    with pytest.raises(MeshError, match="zero everywhere"):
+    with pytest.raises(MeshError, match="the density is zero everywhere it was tried; give one that is positive"):
         random_points(10, lambda points: np.zeros(len(points)), np.random.default_rng(0))
 
 

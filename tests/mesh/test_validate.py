@@ -95,11 +95,14 @@ def test_noise_above_the_tolerance_of_identities_is_refused(icosahedral_mesh: Vo
 
 
 def test_wrong_counts_are_refused(icosahedral_mesh: VoronoiMesh) -> None:
-    with pytest.raises(MeshError, match="areaCell has shape"):
+    with pytest.raises(MeshError, match=r"areaCell has shape \(641,\) instead of \(642,\)"):
         validate_mesh(replace(icosahedral_mesh, area_cell=icosahedral_mesh.area_cell[:-1]))
 
 
 def test_mirrored_mesh_is_refused(icosahedral_mesh: VoronoiMesh) -> None:
     flipped = {f"z_{place}": -getattr(icosahedral_mesh, f"z_{place}") for place in ("cell", "edge", "vertex")}
-    with pytest.raises(MeshError, match="counter-clockwise"):
+    with pytest.raises(
+        MeshError,
+        match=r"vertices 0, 1, 2 and 1277 more \(.*\): cellsOnVertex does not run counter-clockwise",
+    ):
         validate_mesh(replace(icosahedral_mesh, **flipped))

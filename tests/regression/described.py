@@ -38,6 +38,7 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
         "bars": _summary([patch.get_height() for patch in axes.patches if hasattr(patch, "get_height")]),
         "legend": None if legend is None else _of_legend(legend),
         "sizes": [axes.title.get_size(), axes.xaxis.label.get_size(), *_tick_sizes(axes)],
+        "grid": [line.get_alpha() for line in axes.get_xgridlines()[:1] if line.get_visible()],
         "ticks": [label.get_text() for label in axes.get_xticklabels()] if axes.get_xscale() == "linear" else [],
     }
 

@@ -1,8 +1,13 @@
-"""Two simulations in two Python threads write what each writes alone."""
+"""Two simulations in two Python threads write what each writes alone; a run takes the threads it is worth."""
 
 import subprocess
 import sys
 from pathlib import Path
+
+import numba
+import pytest
+
+from swe.threads import worthwhile_threads
 
 PROGRAM = """
 import sys
@@ -33,3 +38,18 @@ def test_files_are_those_of_runs_alone(tmp_path: Path) -> None:
         for cells in ("162", "642"):
             for name in ("history.nc", "diagnostics.nc"):
                 assert (folder / cells / name).read_bytes() == (folders[0] / cells / name).read_bytes()
+
+
+def test_threads_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("swe.threads.CELLS_PER_THREAD", 100)
+    numba.set_num_threads(2)
+    with worthwhile_threads(199) as few:
+        assert few == numba.get_num_threads() == 1
+        with worthwhile_threads(200) as nested:
+            assert nested == 1
+    assert numba.get_num_threads() == 2
+    with worthwhile_threads(200) as enough:
+        assert enough == 2
+    with pytest.raises(KeyError), worthwhile_threads(1):
+        raise KeyError
+    assert numba.get_num_threads() == 2
