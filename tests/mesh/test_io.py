@@ -382,3 +382,10 @@ def test_wide_integers_are_not_cut_to_narrow_ones(mesh_file: Path, tmp_path: Pat
         file["cellsOnEdge"][11, 0] = index
     with pytest.raises(MeshError, match=r"wide\.nc: edges 11 \(.*\): cellsOnEdge holds an index outside 1 to 642"):
         read_mesh(wide)
+
+
+def test_what_was_sorted_is_named(mesh_file: Path) -> None:
+    original = read_mesh(mesh_file)
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        file["edgesOnCell"][40, :6] = file["edgesOnCell"][40, 5::-1]
+    assert_same_arrays(warned_of(mesh_file, r"mesh\.nc: sorted edgesOnCell$"), original, 0.0)

@@ -3,6 +3,7 @@ import pytest
 
 from mesh import VoronoiMesh, scvt_mesh
 from mesh.arrays import Array
+from mesh.moments import SMALL, _small_integrand
 from mesh.quadrature import cell_means, sample_cells
 from mesh.sphere import dot, east_north, from_lonlat, to_lonlat
 
@@ -64,3 +65,11 @@ def test_chunks_do_not_matter(icosahedral_mesh: VoronoiMesh, monkeypatch: pytest
 def test_unknown_sampling_is_refused(icosahedral_mesh: VoronoiMesh) -> None:
     with pytest.raises(ValueError, match="no sampling named 'median'"):
         sample_cells(icosahedral_mesh, harmonic, "median")  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(("drop", "sag"), [(1.0, 0.0), (0.6, 0.4), (0.5, 0.5), (0.2, 0.8)])
+def test_series_of_the_integrand_is_exact_where_it_is_used(drop: float, sag: float) -> None:
+    d, e = SMALL * drop, SMALL * sag
+    exact = 2.0 * (d - e) / ((2.0 - d - e) * (1.0 - e) ** 2)
+    # What is left out is of the fourth order.
+    assert _small_integrand(d, e) == pytest.approx(exact, rel=6.0 * SMALL**4)

@@ -7,7 +7,7 @@ from mesh.density import NAMED
 from mesh.optimizer import Limits, ScvtResult
 from mesh.ordering import sort_triangles
 from mesh.quality import triangle_quality
-from mesh.reseed import reseed
+from mesh.reseed import SHAKEN_RINGS, reseed
 from mesh.scvt import Request, generate_scvt, optimize
 from mesh.triangle_quality import near_bad_triangles, qualities
 from mesh.well_centered import GOAL, _penalty, well_center
@@ -89,3 +89,18 @@ def test_no_round_begins_without_time(circle: ScvtResult) -> None:
     assert late.least_quality < GOAL
     assert late.residual == late.residual_before
     np.testing.assert_array_equal(late.points, circle.points)
+
+
+def test_only_generators_near_bad_triangles_are_shaken() -> None:
+    start = generate_scvt(Request(300, "random", seed=2), Limits(1e-4))
+    fixed = np.arange(300) % 7 == 0
+    near = near_bad_triangles(start.points, start.triangles, 0.9, SHAKEN_RINGS) & ~fixed
+    assert 0 < near.sum() < (~fixed).sum()
+    asked: list[np.ndarray] = []
+
+    def converge(points: np.ndarray) -> ScvtResult:
+        asked.append((points != start.points).any(axis=1))
+        return start
+
+    reseed(start, converge, wanted=0.9, tries=1, seed=0, fixed=fixed)
+    np.testing.assert_array_equal(asked, [near])

@@ -91,7 +91,7 @@ class Copy:
                 (self.folder / mutation.path).write_bytes(original)
         if code is None:
             return "killed by time"
-        if "ERROR: not found" in self.log.read_text():
+        if "ERROR: not found" in self.log.read_text(errors="replace"):
             raise SystemExit(f"the tests have changed since {self.reach} was made; begin in another folder")
         return "survived" if code == 0 else "killed"
 

@@ -18,7 +18,7 @@ from postprocess import compare_maps, solutions, stored_references
 from postprocess.compare import compare, comparison_record, fields_on
 from postprocess.norms import Norms, scalar_norms, vector_norms
 from postprocess.runs import read_run
-from postprocess.solutions import ExactSolution, RunSolution
+from postprocess.solutions import ExactSolution, RunSolution, _short
 from swe import Simulation
 from swe.errors import SetupError
 
@@ -366,3 +366,8 @@ def test_maps_have_one_scale_and_say_what_it_is() -> None:
         assert figure.axes[-1].get_xlabel() == "label (m)"
     figure = compare_maps.map_figure([np.abs(x)], ["one"], "Heading", "label (m)", "from zero")
     assert figure.axes[0].get_images()[0].get_clim() == (0.0, 3.0)
+
+
+def test_long_names_of_runs_keep_their_last_two_parts() -> None:
+    assert _short(Path("runs/tc5")) == "runs/tc5"
+    assert _short(Path("/a/long/way/to/the/folder/of/many/studies/runs/tc5")) == ".../runs/tc5"

@@ -163,3 +163,11 @@ def test_grid_of_the_maps_stands_every_30_degrees(figures: dict[str, Figure]) ->
     assert list(written)[:5] == ["60°S", "30°S", "0°", "30°N", "60°N"]
     for label, line in zip(["60°S", "30°S", "0°", "30°N", "60°N"], parallels, strict=True):
         assert written[label][1] == pytest.approx(line.get_ydata()[0], abs=1e-12)
+
+
+def test_rims_of_maps_hide_nothing(figures: dict[str, Figure]) -> None:
+    for axes in figures["surface_height"].axes[:2]:
+        (rim,) = axes.patches
+        assert rim.get_facecolor()[3] == 0.0
+        assert rim.get_edgecolor() == (0.0, 0.0, 0.0, 1.0)
+        assert axes.collections[0].get_clip_path() is not None

@@ -8,8 +8,11 @@ from mesh.optimizer import Limits
 from mesh.scvt import Request
 from postprocess import mesh_page, mesh_report
 from postprocess.mesh_report import Start, converge_from, distribution_figure, sizes_figure, starts_lines, table1_lines
-from postprocess.table1 import PUBLISHED_SCVT, Row, measures, table1
+from postprocess.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures, table1
 from swe.errors import SetupError
+
+BISECTION_SUMS = (9.4734, 7.1572, 6.7839, 7.9061, 7.772)
+SCVT_SUMS = (10.0305, 7.3275, 6.8692, 7.9406, 7.7799)
 
 
 @pytest.fixture(scope="module")
@@ -100,3 +103,10 @@ def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: p
     residuals = {line.split(":")[0]: float(line.split()[2]) for line in told[-3:]}
     assert max(residuals["lbfgs"], residuals["multilevel"]) < 1e-4 < residuals["lloyd"]
     assert told[-1].endswith(" after 3 iterations")
+
+
+def test_published_tables_are_those_of_the_paper() -> None:
+    """Sums over the columns, taken from the pages."""
+    for table, sums in ((PUBLISHED_BISECTION, BISECTION_SUMS), (PUBLISHED_SCVT, SCVT_SUMS)):
+        assert list(table) == list(range(2, 10))
+        np.testing.assert_allclose(np.sum(list(table.values()), axis=0), sums, atol=1e-12)

@@ -35,6 +35,7 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
         "collections": [_of_collection(each) for each in axes.collections],
         "images": [[*_summary(image.get_array()), image.get_cmap().name, *image.get_clim()] for image in axes.images],
         "texts": [[text.get_text(), *text.get_position(), text.get_ha(), text.get_va()] for text in axes.texts],
+        "rims": [[*patch.get_facecolor(), *patch.get_edgecolor()] for patch in axes.patches[:1]],
         "bars": _summary([patch.get_height() for patch in axes.patches if hasattr(patch, "get_height")]),
         "legend": None if legend is None else _of_legend(legend),
         "sizes": [axes.title.get_size(), axes.xaxis.label.get_size(), *_tick_sizes(axes)],

@@ -13,6 +13,7 @@ from mesh import VoronoiMesh
 from swe import RunError, Simulation
 from swe.errors import SetupError
 from swe.output import FIELDS, SERIES, read_series
+from swe.state import State
 
 
 def test_run_directory_holds_what_scripts_rely_on(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
@@ -202,3 +203,20 @@ def test_history_and_diagnostics_tell_what_they_are_of(icosahedral_mesh: Voronoi
             assert file.integrator == "rrk4"
             assert np.datetime64("2000-01-01T12:00") == file["Time"][-1]
             np.testing.assert_array_equal(file["time"], file["Time"])
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ((np.ones(7), np.zeros(480)), r"initial thickness has shape \(7,\), but the mesh needs \(162,\)"),
+        ((np.ones(162, "f4"), np.zeros(480)), "initial thickness has numbers of type float32; it must have float64"),
+        ((np.ones(162), np.zeros(7)), r"initial normal velocity has shape \(7,\), but the mesh needs \(480,\)"),
+    ],
+)
+def test_a_state_of_another_mesh_is_refused(small_mesh: VoronoiMesh, fields, words: str) -> None:
+    class Wrong(Williamson2):
+        def initial_state(self, *_: object) -> State:
+            return State(*fields)
+
+    with pytest.raises(SetupError, match=words):
+        Simulation(small_mesh, Wrong())

@@ -7,6 +7,7 @@ import pytest
 import swe.benchmark
 from mesh import VoronoiMesh, mesh_from_points, write_mesh
 from tests.trisk.conftest import Call
+from trisk.bench import DEFAULT_CELLS
 
 CONTRACT = {"cells", "threads", "ns_per_cell_step", "triad_gb_per_s", "bytes_per_cell_step", "plain_twin_ratio"}
 
@@ -61,3 +62,7 @@ def test_a_state_that_does_not_survive_is_no_timing(
     assert code == 1
     assert out == ""
     assert "blew up" in err
+
+
+def test_sizes_where_none_are_given() -> None:
+    assert DEFAULT_CELLS == (10242, 40962)

@@ -327,3 +327,17 @@ def test_noise_of_a_file_is_a_warning_in_one_line(trisk, mesh_file: Path) -> Non
     assert json.loads(done.stdout)["cells"] == 162
     code, _, err = trisk("quality", mesh_file, "--json", "--recompute-metrics")
     assert (code, err) == (0, "")
+
+
+def test_output_goes_with_the_table(trisk, tmp_path: Path) -> None:
+    assert trisk("mesh", "--cells", 42, "-o", tmp_path / "mesh.nc")[0] == 0
+    code, _, err = trisk("quality", tmp_path / "mesh.nc", "-o", tmp_path / "page")
+    assert (code, "--output goes with --table1" in err) == (2, True)
+    assert not (tmp_path / "page").exists()
+
+
+def test_an_unknown_format_is_refused_before_the_work(trisk, tmp_path: Path, monkeypatch) -> None:
+    monkeypatch.setattr("trisk.generate.find_density", lambda *_: pytest.fail("the work began"))
+    code, _, err = trisk("mesh", "--cells", 42, "--format", "hdf5", "-o", tmp_path / "mesh.nc")
+    assert code == 2
+    assert "hdf5" in err
