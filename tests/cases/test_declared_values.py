@@ -83,7 +83,7 @@ def test_every_case_is_declared_here() -> None:
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_parameters_have_their_defaults_and_units(name: str) -> None:
     case, expected = CASES[name](), {**EARTH, **PARAMETERS[name]}
-    assert {key: value for key, (value, _) in expected.items()} == pytest.approx(case.parameters(), rel=1e-15)
+    assert {key: value for key, (value, _) in expected.items()} == pytest.approx(case.parameters(), rel=1e-15, abs=0.0)
     meanings = parameter_meanings(case)
     for key, (_, unit) in expected.items():
         if unit is not None:

@@ -389,3 +389,18 @@ def test_what_was_sorted_is_named(mesh_file: Path) -> None:
     with netCDF4.Dataset(mesh_file, "r+") as file:
         file["edgesOnCell"][40, :6] = file["edgesOnCell"][40, 5::-1]
     assert_same_arrays(warned_of(mesh_file, r"mesh\.nc: sorted edgesOnCell$"), original, 0.0)
+
+
+@pytest.mark.parametrize("fill", [-3, 0, 5, 99_999])
+@pytest.mark.parametrize("rings", ["cellsOnCell", "edgesOnCell", "verticesOnCell", "edgesOnEdge"])
+def test_what_stands_beyond_a_ring_is_passed_over(mesh_file: Path, rings: str, fill: int) -> None:
+    original = read_mesh(mesh_file)
+    with netCDF4.Dataset(mesh_file, "r+") as file:
+        counts = file["nEdgesOnEdge" if rings == "edgesOnEdge" else "nEdgesOnCell"][:]
+        values = file[rings][:]
+        beyond = np.arange(values.shape[1]) >= counts[:, None]
+        assert beyond.any()
+        file[rings][:] = np.where(beyond, fill, values)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert_same_arrays(read_mesh(mesh_file), original, 0.0)

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given, reject, settings
 from hypothesis import strategies as st
 
 from mesh import MeshError, VoronoiMesh, mesh_from_points, validate_mesh
+from mesh.errors import HemisphereError
 from mesh.validate import OWN_TOLERANCE
 
 
@@ -21,7 +22,10 @@ def test_own_meshes_hold_all_identities(any_mesh: VoronoiMesh) -> None:
 @settings(deadline=None, max_examples=25)
 @given(cells=st.integers(12, 400), seed=st.integers(0, 10**6))
 def test_random_generators_give_valid_meshes(cells: int, seed: int) -> None:
-    mesh = mesh_from_points(np.random.default_rng(seed).normal(size=(cells, 3)))
+    try:
+        mesh = mesh_from_points(np.random.default_rng(seed).normal(size=(cells, 3)))
+    except HemisphereError:
+        reject()  # of 12 points one set in thirty lies in a hemisphere
     assert max(validate_mesh(mesh).values()) <= OWN_TOLERANCE
 
 

@@ -55,14 +55,16 @@ def test_time_stepping_is_of_fourth_order() -> None:
 
 
 def test_hyperdiffusion_damps_the_highest_wavenumber_at_its_time() -> None:
-    model = SpectralModel(dataclasses.replace(find_case("lake-at-rest"), mountain_height=0.0), 21, damping_hours=2.0)
+    # Without rotation, as a vorticity on a rotating sphere gives some of itself to waves.
+    flat = dataclasses.replace(find_case("lake-at-rest"), mountain_height=0.0, rotation_rate=0.0)
+    model = SpectralModel(flat, 21, damping_hours=2.0)
     state = np.zeros_like(model.initial_state())
     highest = np.flatnonzero(model.harmonics.degree == 21)[0]
     state[2, 0] = 1e5
     state[0, highest] = 1e-20  # too weak a vorticity to do anything else
     for _ in range(4):
         state = model.step(state, 1800.0)
-    assert abs(state[0, highest]) == pytest.approx(1e-20 * np.exp(-1.0), rel=1e-3)
+    assert abs(state[0, highest]) == pytest.approx(1e-20 * np.exp(-1.0), rel=1e-12, abs=0.0)
 
 
 def test_both_models_agree(larger_mesh: VoronoiMesh) -> None:
