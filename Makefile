@@ -74,9 +74,9 @@ reliability: $(VENV)/installed-dev  ## The tables of docs/reliability.md made an
 	$(BIN)/python tests/reliability/mutate_meshes.py 2000
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
-	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/references/williamson5.nc
-	$(BIN)/trisk reference williamson6 --truncation 170 --damping-hours 24 -o postprocess/references/williamson6.nc
-	$(BIN)/trisk reference galewsky --truncation 255 -o postprocess/references/galewsky.nc
+	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/reference/stored/williamson5.nc
+	$(BIN)/trisk reference williamson6 --truncation 170 --damping-hours 24 -o postprocess/reference/stored/williamson6.nc
+	$(BIN)/trisk reference galewsky --truncation 255 -o postprocess/reference/stored/galewsky.nc
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

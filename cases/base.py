@@ -11,9 +11,9 @@ import numpy as np
 
 from cases.differences import gradient, laplacian
 from mesh.arrays import Array
-from mesh.operators import normal_velocity_from_streamfunction
+from mesh.discrete.operators import normal_velocity_from_streamfunction
+from mesh.integrals.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.plain import plain, plain_number
-from mesh.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
 from swe.errors import SetupError

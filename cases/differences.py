@@ -8,8 +8,8 @@ of the wave number. There is no singularity at the poles.
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.quadrature import SphereFunction
-from mesh.sphere import east_north, from_lonlat, to_lonlat
+from mesh.geometry.sphere import east_north, from_lonlat, to_lonlat
+from mesh.integrals.quadrature import SphereFunction
 
 STEP = 0.01
 """Distance between neighbouring points of a difference, rad."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from cases.base import Case
 from mesh.arrays import Array
-from mesh.sphere import arc_length, from_lonlat
+from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import EARTH_RADIUS, GRAVITY, SECONDS_PER_DAY
 from swe.errors import SetupError
 

@@ -8,12 +8,13 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import mesh.compiled_cache
 import mesh.forks  # noqa: F401
-from mesh.build import mesh_from_points, scvt_mesh
+from mesh.discrete.build import mesh_from_points
+from mesh.discrete.operators import Operators, build_operators
+from mesh.discrete.quality import Quality, mesh_quality
+from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError, MeshWarning
-from mesh.io import read_mesh, write_mesh
-from mesh.operators import Operators, build_operators
-from mesh.quality import Quality, mesh_quality
-from mesh.validate import validate_mesh
+from mesh.files.io import read_mesh, write_mesh
+from mesh.generation.pipeline import scvt_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
 __all__ = [

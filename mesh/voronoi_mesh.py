@@ -96,8 +96,8 @@ class Metrics:
 class VoronoiMesh(Metrics, Topology):
     """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
 
-    `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density`) where
-    that is known, and `density_source` where it is found (see `mesh.density_record`) where it comes from a file.
+    `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density.named`)
+    where that is known, and `density_source` where it is found (see `mesh.density.record`) where it comes from a file.
     `fixed_cells` (n_cells,) marks generators that were held while the others moved to their centroids, if any were.
     """
 

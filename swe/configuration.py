@@ -5,9 +5,9 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from mesh.operators import vanishing_edges
+from mesh.discrete.operators import vanishing_edges
+from mesh.integrals.quadrature import Sampling
 from mesh.plain import plain_number
-from mesh.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
@@ -38,7 +38,7 @@ class Configuration:
 
 @dataclass(frozen=True)
 class Options:
-    """Options of `swe.simulation.Simulation`, which tells what they mean; numbers of any type become floats.
+    """Options of `swe.run.simulation.Simulation`, which tells what they mean; numbers of any type become floats.
 
     Raises `SetupError` where one has the wrong type or is out of range.
     """

@@ -1,12 +1,24 @@
-"""Imports go one way: mesh <- swe <- cases <- postprocess <- trisk."""
+"""Imports go one way: mesh <- swe <- cases <- postprocess <- trisk, and so do those between the rooms of each."""
 
 import ast
+import graphlib
+from collections import Counter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 LAYERS = ["mesh", "swe", "cases", "postprocess", "trisk"]
+ROOMS = {
+    "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"],
+    "swe": ["", "parallel", "equations", "tiles", "diagnostics", "stepping", "output", "run"],
+    "cases": [""],
+    "postprocess": ["", "runs", "reference", "compare", "figures", "studies", "pages"],
+    "trisk": ["cli", ""],
+}
+"""Rooms of each package; one may use those that stand before it. The package itself is the first."""
+
+MOST_MODULES = 12
 
 
 def imported_packages(source: str) -> set[str]:
@@ -21,6 +33,28 @@ def imported_packages(source: str) -> set[str]:
             names |= {argument.value for argument in node.args if isinstance(argument, ast.Constant)}
     assert not [name for name in names if name.startswith(".")], "relative imports hide where they lead"
     return {name.split(".")[0] for name in names}
+
+
+def imported_modules(source: str) -> set[str]:
+    """Full names of all that statements of import in a source may mean: modules, and what they hold."""
+    names = set()
+    for node in ast.walk(ast.parse(source)):
+        if isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return names
+
+
+def modules_of(layer: str) -> dict[str, Path]:
+    """Modules of a package by their full names, but for those that only make a folder a package."""
+    files = ((path, path.relative_to(ROOT).with_suffix("")) for path in (ROOT / layer).rglob("*.py"))
+    return {".".join(name.parts): path for path, name in files if path.stem != "__init__"}
+
+
+def room_of(module: str) -> str:
+    parts = module.split(".")
+    return parts[1] if len(parts) == 3 else ""
 
 
 def called(node: ast.Call) -> str:
@@ -44,8 +78,8 @@ def test_imports_go_one_way(layer: str) -> None:
     "source",
     [
         "import swe",
-        "import swe.model as m",
-        "from swe.model import State",
+        "import swe.equations.model as m",
+        "from swe.equations.model import State",
         "def f():\n    from swe import State",
         "if TYPE_CHECKING:\n    from swe.state import State",
         "import importlib\nimportlib.import_module('swe.state')",
@@ -55,6 +89,38 @@ def test_imports_go_one_way(layer: str) -> None:
 def test_an_import_against_the_direction_is_found(source: str) -> None:
     assert against_the_direction("mesh", source) == {"swe"}
     assert against_the_direction("cases", source) == set()
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_rooms_use_those_before_them(layer: str) -> None:
+    modules = modules_of(layer)
+    assert {room_of(module) for module in modules} | {""} == set(ROOMS[layer])
+    order = {room: number for number, room in enumerate(ROOMS[layer])}
+    for module, path in modules.items():
+        above = [
+            other
+            for other in imported_modules(path.read_text()) & modules.keys()
+            if order[room_of(other)] > order[room_of(module)]
+        ]
+        assert not above, module
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_no_module_leads_back_to_itself(layer: str) -> None:
+    modules = modules_of(layer)
+    uses = {module: imported_modules(path.read_text()) & modules.keys() for module, path in modules.items()}
+    list(graphlib.TopologicalSorter(uses).static_order())
+
+
+def test_a_circle_is_found() -> None:
+    with pytest.raises(graphlib.CycleError):
+        list(graphlib.TopologicalSorter({"a": {"b"}, "b": {"a"}}).static_order())
+
+
+@pytest.mark.parametrize("layer", LAYERS)
+def test_rooms_are_small(layer: str) -> None:
+    counts = Counter(room_of(module) for module in modules_of(layer))
+    assert max(counts.values()) <= MOST_MODULES, counts
 
 
 def test_a_relative_import_is_found() -> None:
@@ -71,7 +137,7 @@ def test_only_files_of_meshes_know_which_arrays_count_from_one() -> None:
         for node in ast.walk(ast.parse(path.read_text()))
         if isinstance(node, ast.Attribute) and node.attr == "is_index"
     }
-    assert users == {"mesh/io.py", "mesh/mesh_file.py", "mesh/arrange.py"}
+    assert users == {"mesh/files/io.py", "mesh/files/mesh_file.py", "mesh/files/arrange.py"}
 
 
 def test_version_is_the_same_everywhere() -> None:

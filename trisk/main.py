@@ -16,9 +16,9 @@ from typing import Annotated, Any, Literal, TextIO, cast
 
 import typer
 
-from trisk import study
-from trisk.options import CaseName, Quiet, Recompute, Settings
-from trisk.streams import ErrorOutput
+from trisk.cli import study
+from trisk.cli.options import CaseName, Quiet, Recompute, Settings
+from trisk.cli.streams import ErrorOutput
 
 app = typer.Typer(
     help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
@@ -103,10 +103,10 @@ def mesh(
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh.build import default_limits
-    from mesh.gridded_density import Shaping
-    from trisk.generate import MeshOptions, generate
-    from trisk.report import print_quality
+    from mesh.density.gridded import Shaping
+    from mesh.generation.pipeline import default_limits
+    from trisk.cli.generate import MeshOptions, generate
+    from trisk.cli.report import print_quality
 
     limits = default_limits(density, method, tolerance, max_iterations, max_seconds)
     shaping = Shaping(density_floor, density_power, density_smoothing)
@@ -134,7 +134,7 @@ def quality(
     """Validate a mesh file and measure its quality."""
     from dataclasses import asdict
 
-    from trisk.report import print_quality, print_table1
+    from trisk.cli.report import print_quality, print_table1
 
     if (file is None) != table1:
         raise typer.BadParameter("give either a mesh file or --table1")
@@ -144,13 +144,13 @@ def quality(
         raise typer.BadParameter("--output goes with --table1")
     if file is None:
         if output is not None:
-            from postprocess.folders import require_possible_folder
+            from postprocess.runs.folders import require_possible_folder
 
             require_possible_folder(output)
         print_table1(max_level, output)
         return
     from mesh import read_mesh
-    from mesh.quality import quality_and_note
+    from mesh.discrete.quality import quality_and_note
 
     read = read_mesh(file, recompute_metrics)
     if as_json:
@@ -219,9 +219,9 @@ def run(
     from swe import Simulation
     from swe.configuration import Options
     from swe.errors import SetupError
-    from swe.recorder import days_of, run_to_go_on_with
-    from trisk.meshes import chosen_mesh, mesh_of_run
-    from trisk.report import print_run
+    from swe.output.recorder import days_of, run_to_go_on_with
+    from trisk.cli.meshes import chosen_mesh, mesh_of_run
+    from trisk.cli.report import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
     options: dict[str, Any] = {
@@ -265,7 +265,7 @@ def cases(
 ) -> None:
     """List the test cases, or the parameters of one."""
     from cases import CASES, find_case
-    from trisk.case_table import print_case, print_cases
+    from trisk.cli.case_table import print_case, print_cases
 
     if name is None:
         print_cases([find_case(known) for known in CASES])
@@ -282,9 +282,9 @@ def plot(
 
     The figures go to the folder of figures of the run.
     """
-    from postprocess.plots import plot_run
-    from postprocess.runs import read_run
-    from swe.output import FIGURES_FOLDER
+    from postprocess.figures.plots import plot_run
+    from postprocess.runs.reading import read_run
+    from swe.output.files import FIGURES_FOLDER
 
     paths = plot_run(read_run(run_directory), run_directory / FIGURES_FOLDER)
     if not quiet:
@@ -305,8 +305,8 @@ def spectra(
 
     Energy is that of the motion, and the wavenumber the total one.
     """
-    from postprocess.runs import read_run
-    from postprocess.spectra import write_spectra_of
+    from postprocess.figures.spectra_figure import write_spectra_of
+    from postprocess.runs.reading import read_run
 
     paths = write_spectra_of([read_run(directory) for directory in run_directories], days or (), output)
     if not quiet:
@@ -333,7 +333,7 @@ def reference(
     """Make a reference solution of a case with the spectral model."""
     from cases import find_case
     from cases.parameters import split_settings
-    from trisk.reference import make
+    from trisk.cli.reference import make
 
     chosen = find_case(case, split_settings(settings or ()))
     make(chosen, days or (), truncation, damping_hours, output, _command_line(), quiet)
@@ -364,12 +364,12 @@ def compare(
 
     Prints error norms and what was conserved, and draws maps.
     """
-    from postprocess.compare import compare as compare_runs
-    from postprocess.compare import comparison_record
-    from postprocess.compare_maps import write_maps
-    from postprocess.folders import require_possible_folder
-    from swe.output import FIGURES_FOLDER
-    from trisk.comparison_table import print_comparison
+    from postprocess.compare.comparison import compare as compare_runs
+    from postprocess.compare.comparison import comparison_record
+    from postprocess.figures.compare_maps import write_maps
+    from postprocess.runs.folders import require_possible_folder
+    from swe.output.files import FIGURES_FOLDER
+    from trisk.cli.comparison_table import print_comparison
 
     folder = output or run_directories[0] / FIGURES_FOLDER
     require_possible_folder(folder)
@@ -399,7 +399,7 @@ def bench(
 
     Tells the cost of a step of test case 5, beside plain loops and beside what the memory could do.
     """
-    from trisk.bench import print_timings, timings
+    from trisk.cli.bench import print_timings, timings
 
     results = timings(mesh_file, cells or (), recompute_metrics, show=not quiet)
     if as_json:
@@ -409,7 +409,7 @@ def bench(
 
 
 def _command_line() -> str:
-    from mesh.files import name_in_text
+    from mesh.safe_files import name_in_text
 
     return name_in_text(shlex.join(["trisk", *sys.argv[1:]]))
 

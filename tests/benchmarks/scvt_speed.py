@@ -14,9 +14,9 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from mesh.generators import icosahedral_mesh
-from mesh.optimizer import Limits, Optimizer
-from mesh.ordering import renumber
+from mesh.generation.generators import icosahedral_mesh
+from mesh.generation.optimizer import Limits, Optimizer
+from mesh.triangulation.ordering import renumber
 
 TOLERANCES = {6: 1e-6, 7: 1e-6, 8: 1e-6, 9: 1e-5}
 """Bisection level (10*4^level + 2 cells) and residual wanted."""
@@ -28,8 +28,8 @@ import resource, sys, time, tracemalloc
 begin = time.perf_counter()
 import numpy as np
 from mesh import mesh_from_points, write_mesh
-from mesh.optimizer import Limits
-from mesh.scvt import Request, generate_scvt, optimize, starting_mesh
+from mesh.generation.optimizer import Limits
+from mesh.generation.scvt import Request, generate_scvt, optimize, starting_mesh
 
 cells, tolerance, path = int(sys.argv[1]), float(sys.argv[2]), sys.argv[3]
 result = generate_scvt(Request(cells), Limits(tolerance))

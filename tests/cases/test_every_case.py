@@ -10,7 +10,7 @@ from cases.differences import gradient, laplacian
 from cases.parameters import parameter_meanings
 from mesh import VoronoiMesh, build_operators
 from mesh.arrays import Array
-from mesh.operators import normal_velocity_from_streamfunction
+from mesh.discrete.operators import normal_velocity_from_streamfunction
 from swe import Simulation, State
 from swe.errors import SetupError
 

@@ -5,9 +5,9 @@ import pytest
 
 from cases import LakeAtRest
 from mesh import VoronoiMesh
-from mesh.quadrature import Sampling
+from mesh.integrals.quadrature import Sampling
 from swe import Simulation
-from swe.output import read_series
+from swe.output.files import read_series
 
 
 @pytest.mark.parametrize("sampling", ["point", "mean"])

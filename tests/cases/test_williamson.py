@@ -5,8 +5,8 @@ import pytest
 
 from cases import Williamson1, Williamson2, Williamson5, Williamson6
 from mesh import VoronoiMesh
-from mesh.operators import velocity_at_cells
-from mesh.sphere import arc_length, from_lonlat
+from mesh.discrete.operators import velocity_at_cells
+from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import SetupError
 

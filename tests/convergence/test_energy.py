@@ -3,7 +3,7 @@
 from cases import Williamson5
 from mesh import VoronoiMesh
 from swe import Simulation
-from swe.invariants import Changes, relative_changes
+from swe.diagnostics.invariants import Changes, relative_changes
 
 
 def changes_after_fifteen_days(mesh: VoronoiMesh, time_step: float) -> Changes:

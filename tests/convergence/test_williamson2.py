@@ -5,7 +5,7 @@ import pytest
 
 from cases import Williamson2
 from mesh import VoronoiMesh, scvt_mesh
-from postprocess.norms import scalar_norms
+from postprocess.compare.norms import scalar_norms
 from swe import Simulation
 
 EXPECTED = {642: 2.106e-3, 2562: 5.444e-4, 10242: 1.387e-4}

@@ -1,10 +1,10 @@
-"""Plain numpy twins of the kernels of `mesh.moments`, from other formulae."""
+"""Plain numpy twins of the kernels of `mesh.integrals.moments`, from other formulae."""
 
 import numpy as np
 
 from mesh.arrays import Array, Index, sum_by_index
-from mesh.half_edges import build_twins
-from mesh.sphere import arc_length, circumcenter, dot, triangle_area
+from mesh.geometry.sphere import arc_length, circumcenter, dot, triangle_area
+from mesh.triangulation.half_edges import build_twins
 
 
 def mass_and_moment(points: Array, triangles: Index) -> tuple[Array, Array]:

@@ -85,11 +85,13 @@ def test_a_folder_that_cannot_be_written(installation: Path, tmp_path: Path) -> 
 
 
 def test_stamps_cover_what_is_imported_through_others() -> None:
-    assert ROOT / "mesh" / "sphere.py" in imported_files(ROOT / "mesh" / "quality.py")
-    assert ROOT / "mesh" / "arrays.py" in imported_files(ROOT / "mesh" / "sphere.py")
-    files = {name: ROOT / "mesh" / name for name in ("io.py", "sphere.py", "quality.py")}
-    assert len({sources_stamp(file) for file in files.values()}) == 3
-    assert ROOT / "mesh" / "quality.py" not in imported_files(ROOT / "swe" / "kernels.py")
+    io, sphere, quality = (
+        ROOT / "mesh" / name for name in ("files/io.py", "geometry/sphere.py", "discrete/quality.py")
+    )
+    assert sphere in imported_files(quality)
+    assert ROOT / "mesh" / "arrays.py" in imported_files(sphere)
+    assert len({sources_stamp(file) for file in (io, sphere, quality)}) == 3
+    assert quality not in imported_files(ROOT / "swe" / "equations" / "kernels.py")
 
 
 def test_no_folder_at_all(monkeypatch: pytest.MonkeyPatch) -> None:

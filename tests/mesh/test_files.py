@@ -8,14 +8,14 @@ from pathlib import Path
 import pytest
 
 from mesh import VoronoiMesh, read_mesh, write_mesh
-from mesh.files import written_aside
-from mesh.io import mesh_hash
+from mesh.files.io import mesh_hash
+from mesh.safe_files import written_aside
 
 READERS = """
 import sys
 from concurrent.futures import ThreadPoolExecutor
 from mesh import read_mesh
-from mesh.io import mesh_hash
+from mesh.files.io import mesh_hash
 with ThreadPoolExecutor(8) as pool:
     print(len(set(pool.map(lambda _: mesh_hash(read_mesh(sys.argv[1])), range(60)))), mesh_hash(read_mesh(sys.argv[1])))
 """

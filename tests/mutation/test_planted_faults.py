@@ -84,8 +84,8 @@ def test_tests_that_reach_a_line_are_found() -> None:
 
 
 def test_importers_are_found() -> None:
-    found = importers(ROOT, "mesh/sphere.py")
-    assert found >= {"mesh/sphere.py", "mesh/metrics.py", "mesh/density.py"}
+    found = importers(ROOT, "mesh/geometry/sphere.py")
+    assert found >= {"mesh/geometry/sphere.py", "mesh/discrete/metrics.py", "mesh/density/named.py"}
     assert "mesh/arrays.py" not in found
 
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from cases import Williamson2, Williamson5
 from mesh import scvt_mesh
-from postprocess.norms import scalar_norms
+from postprocess.compare.norms import scalar_norms
 from swe import Simulation
 
 NORMS_FILE = Path(__file__).with_name("norms.json")

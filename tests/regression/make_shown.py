@@ -24,22 +24,23 @@ from rich.console import Console
 
 from cases import CASES, Galewsky, Williamson2, Williamson5, find_case
 from mesh import mesh_from_points, mesh_quality, scvt_mesh
-from mesh.generators import fibonacci_points
-from mesh.optimizer import History
-from postprocess import mesh_report, study_report
-from postprocess.compare import compare_runs, comparison_record
-from postprocess.compare_maps import write_maps
-from postprocess.mesh_study import Plan
-from postprocess.mesh_study import carry_out as carry_out_meshes
-from postprocess.plots import plot_run
-from postprocess.runs import read_run
-from postprocess.spectra import write_spectra_of
-from postprocess.table1 import Row
-from postprocess.time_study import TimePlan
-from postprocess.time_study import carry_out as carry_out_times
+from mesh.generation.optimizer import History
+from mesh.geometry.sphere import fibonacci_points
+from postprocess.compare.comparison import compare_runs, comparison_record
+from postprocess.figures.compare_maps import write_maps
+from postprocess.figures.plots import plot_run
+from postprocess.figures.spectra_figure import write_spectra_of
+from postprocess.pages import mesh_report
+from postprocess.pages.table1 import Row
+from postprocess.runs.reading import read_run
+from postprocess.studies import study_report
+from postprocess.studies.mesh_study import Plan
+from postprocess.studies.mesh_study import carry_out as carry_out_meshes
+from postprocess.studies.time_study import TimePlan
+from postprocess.studies.time_study import carry_out as carry_out_times
 from swe import Simulation
-from swe.benchmark import Timing
-from trisk import bench, case_table, comparison_table, report
+from swe.run.benchmark import Timing
+from trisk.cli import bench, case_table, comparison_table, report
 
 SHOWN_FILE = Path(__file__).with_name("shown.json")
 WIDTH = 160

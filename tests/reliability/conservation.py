@@ -11,14 +11,14 @@ from matplotlib.figure import Figure
 
 from cases import Williamson5
 from mesh import VoronoiMesh, read_mesh, scvt_mesh, write_mesh
-from mesh.build import mesh_from_points
-from mesh.gridded_density import find_density
-from mesh.nested import nested_scvt
-from mesh.optimizer import Limits
-from mesh.sphere import normalize
-from postprocess.compare import compare
+from mesh.density.gridded import find_density
+from mesh.discrete.build import mesh_from_points
+from mesh.generation.nested import nested_scvt
+from mesh.generation.optimizer import Limits
+from mesh.geometry.sphere import normalize
+from postprocess.compare.comparison import compare
 from swe import Simulation
-from swe.output import DIAGNOSTICS_FILE, read_series
+from swe.output.files import DIAGNOSTICS_FILE, read_series
 
 SECONDS_PER_DAY = 86400.0
 STEPS = (600.0, 300.0, 150.0)

@@ -36,22 +36,23 @@ def compile_checked() -> None:
 def exercise() -> dict[str, np.ndarray]:
     """Make meshes by every method, and run every scheme on a regular and an irregular one."""
     from cases import Williamson1, Williamson5
-    from mesh import mesh_from_points, mesh_quality, multilevel, scvt_mesh
-    from mesh.density import uniform
-    from mesh.generators import fibonacci_points
-    from mesh.gridded_density import find_density
-    from mesh.nested import nested_scvt
-    from mesh.operators import velocity_at_cells
-    from mesh.optimizer import Limits
-    from mesh.scattered_density import density_from_cells
-    from mesh.topology import FILL
-    from mesh.validate import validate_mesh
+    from mesh import mesh_from_points, mesh_quality, scvt_mesh
+    from mesh.density.gridded import find_density
+    from mesh.density.named import uniform
+    from mesh.density.scattered import density_from_cells
+    from mesh.discrete.operators import velocity_at_cells
+    from mesh.discrete.topology import FILL
+    from mesh.discrete.validate import validate_mesh
+    from mesh.generation import multilevel
+    from mesh.generation.nested import nested_scvt
+    from mesh.generation.optimizer import Limits
+    from mesh.generation.well_centered import well_center
+    from mesh.geometry.sphere import fibonacci_points
     from mesh.voronoi_mesh import TOPOLOGY_NAMES
-    from mesh.well_centered import well_center
     from swe import ShallowWaterModel, Simulation
-    from swe.budgets import measure_rates
-    from swe.dissipation import BiharmonicDissipation
-    from swe.time_stepping import RungeKutta
+    from swe.diagnostics.budgets import measure_rates
+    from swe.equations.dissipation import BiharmonicDissipation
+    from swe.stepping.time_stepping import RungeKutta
 
     multilevel.SERIAL_LIMIT = 10  # so that its parallel loops are called too
     found: dict[str, np.ndarray] = {}

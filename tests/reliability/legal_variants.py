@@ -20,7 +20,7 @@ import numpy as np
 from cases import Williamson5
 from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh, scvt_mesh, write_mesh
 from mesh.conventions import MESH_VARIABLES
-from mesh.files import dataset
+from mesh.safe_files import dataset
 from swe import Simulation
 
 RUN_TOLERANCE = 1e-12

@@ -22,8 +22,8 @@ import numpy as np
 
 from mesh import MeshError, VoronoiMesh, mesh_from_points, read_mesh, scvt_mesh
 from mesh.conventions import BY_NAME, MESH_VARIABLES
-from mesh.io import write_mesh
-from mesh.validate import OUTSIDE_TOLERANCE, validate_mesh
+from mesh.discrete.validate import OUTSIDE_TOLERANCE, validate_mesh
+from mesh.files.io import write_mesh
 
 NOISE = 10 * OUTSIDE_TOLERANCE
 """Relative to the size of a cell."""

@@ -10,7 +10,7 @@ import netCDF4
 import numpy as np
 import pytest
 
-from swe.output import read_series
+from swe.output.files import read_series
 
 BLOCK = 1024
 """Bytes of a block of the shell's limit of file sizes."""

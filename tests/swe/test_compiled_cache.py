@@ -7,7 +7,7 @@ from pathlib import Path
 
 PROGRAM = """
 import numpy as np
-from swe.exact_sum import _words, exact_sum
+from swe.parallel.exact_sum import _words, exact_sum
 print(exact_sum(np.full(10, 0.1)), sum(_words.stats.cache_hits.values()))
 """
 

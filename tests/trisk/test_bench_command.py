@@ -4,19 +4,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import swe.benchmark
+import swe.run.benchmark
 from mesh import VoronoiMesh, mesh_from_points, write_mesh
 from tests.trisk.conftest import Call
-from trisk.bench import DEFAULT_CELLS
+from trisk.cli.bench import DEFAULT_CELLS
 
 CONTRACT = {"cells", "threads", "ns_per_cell_step", "triad_gb_per_s", "bytes_per_cell_step", "plain_twin_ratio"}
 
 
 @pytest.fixture(autouse=True)
 def short_turns(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(swe.benchmark, "ROUNDS", 3)
-    monkeypatch.setattr(swe.benchmark, "SECONDS_PER_TURN", 0.01)
-    monkeypatch.setattr(swe.benchmark, "TRIAD_SIZE", 100_000)
+    monkeypatch.setattr(swe.run.benchmark, "ROUNDS", 3)
+    monkeypatch.setattr(swe.run.benchmark, "SECONDS_PER_TURN", 0.01)
+    monkeypatch.setattr(swe.run.benchmark, "TRIAD_SIZE", 100_000)
 
 
 def test_json_has_one_object_for_every_size(trisk: Call) -> None:
@@ -55,7 +55,7 @@ def test_a_state_that_does_not_survive_is_no_timing(
     trisk: Call, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Random generators: a few hundred steps at the default time step, and the run blows up."""
-    monkeypatch.setattr(swe.benchmark, "SECONDS_PER_TURN", 0.5)
+    monkeypatch.setattr(swe.run.benchmark, "SECONDS_PER_TURN", 0.5)
     path = tmp_path / "mesh.nc"
     write_mesh(mesh_from_points(np.random.default_rng(1).normal(size=(500, 3))), path)
     code, out, err = trisk("bench", "--mesh", path, "-q")

@@ -8,7 +8,7 @@ import pytest
 
 from cases import Williamson2
 from mesh import scvt_mesh
-from postprocess import compare_maps
+from postprocess.figures import compare_maps
 from swe import Simulation
 from tests.trisk.conftest import Call
 

@@ -1,0 +1,143 @@
+"""Density functions: how closely generators lie where.
+
+A density is any callable that takes unit vectors (m, 3) and returns m numbers, not negative and not all zero. In a
+centroidal Voronoi tessellation the widths of the cells go like density^(-1/4) (Gersho's conjecture; Ju, Ringler and
+Gunzburger 2011, section 3), so only ratios of values matter.
+
+`refined-circle` and `refined-box` are equations (12) and (13) of that paper; both have the form
+
+    rho = ((1 - s) gamma + s)^4,    s = d / alpha restricted to [0, 1],
+
+where d is the distance from the refined region in the plane of latitude and longitude, alpha the width of the
+transition, and gamma the ratio of widths far outside and inside. They are continuous, with kinks.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.errors import MeshError
+from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
+
+Density = Callable[[Array], Array]
+
+
+def uniform(points: Array) -> Array:
+    """Density one everywhere."""
+    return np.ones(len(points))
+
+
+@dataclass(frozen=True)
+class RefinedCircle:
+    """Equation (12): cells are `ratio` times narrower within a circle of the latitude-longitude plane; radians."""
+
+    latitude: float = np.pi / 6.0
+    longitude: float = 1.5 * np.pi
+    radius: float = np.pi / 6.0
+    transition: float = np.pi / 12.0
+    ratio: float = 3.0
+
+    def __call__(self, points: Array) -> Array:
+        """Values (m,) at unit vectors (m, 3)."""
+        longitude, latitude = to_lonlat(points)
+        distance = np.hypot(latitude - self.latitude, _wrapped(longitude - self.longitude))
+        return _blend(distance - self.radius, self.transition, self.ratio)
+
+
+@dataclass(frozen=True)
+class RefinedBox:
+    """Equation (13): cells are `ratio` times narrower within a box of latitudes and longitudes; radians."""
+
+    south: float = np.radians(-5.0)
+    north: float = np.radians(60.0)
+    west: float = np.radians(225.0)
+    east: float = np.radians(310.0)
+    transition: float = 0.24
+    ratio: float = 3.0
+
+    def __call__(self, points: Array) -> Array:
+        """Values (m,) at unit vectors (m, 3)."""
+        longitude, latitude = to_lonlat(points)
+        middle, half_width = 0.5 * (self.west + self.east), 0.5 * (self.east - self.west)
+        beyond_side = np.maximum(np.abs(_wrapped(longitude - middle)) - half_width, 0.0)
+        beyond_end = np.maximum(np.maximum(self.south - latitude, latitude - self.north), 0.0)
+        return _blend(np.hypot(beyond_side, beyond_end), self.transition, self.ratio)
+
+
+@dataclass(frozen=True)
+class SmoothTransition:
+    """Cell width `inner_width` within the arc `radius` of a centre and `outer_width` beyond: the density is width^-4.
+
+    Between them the width changes like tanh((arc - radius) / transition). Angles in radians; only the ratio of the
+    widths matters.
+    """
+
+    inner_width: float = 1.0
+    outer_width: float = 3.0
+    latitude: float = np.pi / 6.0
+    longitude: float = 1.5 * np.pi
+    radius: float = np.pi / 6.0
+    transition: float = np.pi / 20.0
+
+    def __call__(self, points: Array) -> Array:
+        """Values (m,) at unit vectors (m, 3)."""
+        center = from_lonlat(np.array(self.longitude), np.array(self.latitude))
+        arc = arc_length(points, np.broadcast_to(center, points.shape))
+        share = 0.5 * (1.0 + np.tanh((arc - self.radius) / self.transition))
+        return (self.inner_width + share * (self.outer_width - self.inner_width)) ** -4.0
+
+
+NAMED: dict[str, Density] = {
+    "uniform": uniform,
+    "refined-circle": RefinedCircle(),
+    "refined-box": RefinedBox(),
+    "smooth-transition": SmoothTransition(),
+}
+
+
+def density_at(density: Density, points: Array) -> Array:
+    """Values (m,) of a density at unit vectors (m, 3).
+
+    Takes what a user's function may give: any numeric type, lists, a column (m, 1), or one number for all points.
+    Raises `MeshError` where the values are of another shape or type, negative or not finite.
+    """
+    given = density(points)
+    try:
+        values = np.asarray(given)
+    except ValueError:  # a list of lists of different lengths
+        values = np.empty(0, object)
+    if values.dtype.kind not in "biuf":
+        raise MeshError(f"the density gives {type(given).__name__} instead of real numbers; return one per point")
+    if values.shape == ():
+        values = np.full(len(points), values)
+    if values.shape not in ((len(points),), (len(points), 1)):
+        raise MeshError(
+            f"the density gives values of shape {values.shape} at {len(points)} points; return one per point"
+        )
+    values = np.ascontiguousarray(values.reshape(len(points)), dtype=np.float64)
+    _check(values, points)
+    return values
+
+
+def _check(values: Array, points: Array) -> None:
+    """Raise `MeshError` where a value (m,) at points (m, 3) is negative or not finite."""
+    wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
+    if len(wrong):
+        longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[wrong[:1]]))
+        raise MeshError(
+            f"the density is {values[wrong[0]]:g} at longitude {longitude:.2f} and latitude {latitude:.2f} degrees; "
+            "it must be finite and not negative"
+        )
+
+
+def _blend(distance: Array, transition: float, ratio: float) -> Array:
+    """ratio^4 where `distance` is not positive, one beyond the transition, the fourth power of a line in between."""
+    share = np.clip(distance / transition, 0.0, 1.0)
+    return ((1.0 - share) * ratio + share) ** 4
+
+
+def _wrapped(angle: Array) -> Array:
+    """Angle in [-pi, pi)."""
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi

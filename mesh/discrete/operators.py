@@ -1,0 +1,222 @@
+"""The discrete calculus of the C-grid as sparse matrices: one row per entity where the result lives.
+
+Thickness-like fields live at cells, normal velocities at edges, vorticity-like fields at vertices. The matrices
+are the plain statement of the operators; the solver's kernels are tested against them.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_array, csr_array
+
+from mesh.arrays import Array, Index
+from mesh.voronoi_mesh import VoronoiMesh
+
+
+@dataclass(frozen=True, eq=False)
+class Operators:
+    """All operators of one mesh; apply them with `@`.
+
+    `divergence` (cells x edges), `gradient` (edges x cells), `curl` (vertices x edges) and `perp` (edges x edges)
+    follow Ringler et al. (2010), equations (21), (22), (23) and (24). `kinetic_energy` (cells x edges) acts on
+    squared normal velocities (equation (63)). `cell_to_edge` and `vertex_to_edge` are means of two,
+    `cell_to_vertex` weights by kite areas (equation (25)).
+    """
+
+    divergence: csr_array
+    gradient: csr_array
+    curl: csr_array
+    perp: csr_array
+    kinetic_energy: csr_array
+    cell_to_edge: csr_array
+    cell_to_vertex: csr_array
+    vertex_to_edge: csr_array
+
+
+def build_operators(mesh: VoronoiMesh) -> Operators:
+    """The operators of `mesh`, in the units of its radius."""
+    n_cells, n_edges, n_vertices = mesh.n_cells, mesh.n_edges, mesh.n_vertices
+    edge = np.arange(n_edges)
+    first, second = mesh.cells_on_edge.T
+    tail, head = mesh.vertices_on_edge.T
+    ones = np.ones(n_edges)
+
+    outflow = _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, n_cells)
+    circulation = _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, n_vertices)
+    quarter = 0.25 * mesh.dv_edge * mesh.dc_edge
+    vertex = np.repeat(np.arange(n_vertices), 3)
+    return Operators(
+        divergence=_scale_rows(1.0 / mesh.area_cell, outflow),
+        gradient=_scale_rows(1.0 / mesh.dc_edge, _two_per_edge(second, first, ones, -ones, n_cells).T),
+        curl=_scale_rows(1.0 / mesh.area_triangle, circulation),
+        perp=_perp(mesh),
+        kinetic_energy=_scale_rows(1.0 / mesh.area_cell, _two_per_edge(first, second, quarter, quarter, n_cells)),
+        cell_to_edge=csr_array(_two_per_edge(first, second, 0.5 * ones, 0.5 * ones, n_cells).T),
+        cell_to_vertex=_scale_rows(
+            1.0 / mesh.area_triangle,
+            coo_array(
+                (mesh.kite_areas_on_vertex.ravel(), (vertex, mesh.cells_on_vertex.ravel())),
+                shape=(n_vertices, n_cells),
+            ),
+        ),
+        vertex_to_edge=csr_array(
+            coo_array(
+                (np.full(2 * n_edges, 0.5), (np.concatenate([edge, edge]), np.concatenate([tail, head]))),
+                shape=(n_edges, n_vertices),
+            )
+        ),
+    )
+
+
+def _two_per_edge(rows_a: Array, rows_b: Array, values_a: Array, values_b: Array, n_rows: int) -> coo_array:
+    """Matrix (n_rows, n_edges) with one entry for each end of every edge."""
+    edge = np.arange(len(rows_a))
+    return coo_array(
+        (
+            np.concatenate([values_a, values_b]),
+            (np.concatenate([rows_a, rows_b]), np.concatenate([edge, edge])),
+        ),
+        shape=(n_rows, len(edge)),
+    )
+
+
+def _scale_rows(factors: Array, matrix: coo_array) -> csr_array:
+    rows = csr_array(matrix)
+    rows.data *= np.repeat(factors, np.diff(rows.indptr))
+    return rows
+
+
+def _perp(mesh: VoronoiMesh) -> csr_array:
+    filled = np.arange(mesh.edges_on_edge.shape[1]) < mesh.n_edges_on_edge[:, None]
+    row = np.repeat(np.arange(mesh.n_edges), mesh.n_edges_on_edge)
+    values, columns = mesh.weights_on_edge[filled], mesh.edges_on_edge[filled]
+    return csr_array(coo_array((values, (row, columns)), shape=(mesh.n_edges, mesh.n_edges)))
+
+
+VANISHING = 1e-9
+"""Edges shorter than this part of the distance of their cells have no length but for round-off."""
+
+
+def vanishing_edges(mesh: VoronoiMesh) -> Index:
+    """Edges without length: their two triangles have one circumcircle, as the halves of a square do."""
+    return np.flatnonzero(mesh.dv_edge <= VANISHING * mesh.dc_edge)
+
+
+def normal_velocity_from_streamfunction(mesh: VoronoiMesh, streamfunction: Array) -> Array:
+    """Normal component of k x grad(psi) at edges (n_edges,), from psi at vertices (n_vertices,).
+
+    Minus the difference of psi along the tangent over `dv_edge`; its discrete divergence vanishes to round-off. Edges
+    without length get the velocity that the other edges of their two cells have by least squares.
+    """
+    tail, head = mesh.vertices_on_edge.T
+    none = vanishing_edges(mesh)
+    length = mesh.dv_edge.copy()
+    length[none] = np.inf
+    velocity = -(streamfunction[head] - streamfunction[tail]) / length
+    for edge in none:
+        velocity[edge] = _velocity_of_neighbours(mesh, velocity, np.isfinite(length), edge)
+    return velocity
+
+
+def _velocity_of_neighbours(mesh: VoronoiMesh, velocity: Array, known: NDArray[np.bool_], edge: int) -> float:
+    """The velocity along the normal of an edge, the mean of those of its two cells by least squares."""
+    centers = mesh.cell_points / mesh.sphere_radius
+    normals = centers[mesh.cells_on_edge[:, 1]] - centers[mesh.cells_on_edge[:, 0]]
+    of_cells = []
+    for cell in mesh.cells_on_edge[edge]:
+        edges = mesh.edges_on_cell[cell, : mesh.n_edges_on_cell[cell]]
+        edges = edges[known[edges]]
+        units = normals[edges] / np.linalg.norm(normals[edges], axis=1)[:, None]
+        # The point itself, along which nothing moves, makes the solution one in the tangent plane.
+        rows, values = np.vstack([units, centers[cell]]), np.append(velocity[edges], 0.0)
+        of_cells.append(np.linalg.lstsq(rows, values, rcond=None)[0])
+    unit = normals[edge] / np.linalg.norm(normals[edge])
+    return float(np.mean(of_cells, axis=0) @ unit)
+
+
+def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array, Array]:
+    """Zonal and meridional velocity at cell centres (n_cells,), from normal velocities (n_edges,).
+
+    Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
+    exact for a uniform flow in the plane.
+    """
+    return _velocity_at_cells(
+        normal_velocity,
+        mesh.n_edges_on_cell,
+        mesh.edges_on_cell,
+        mesh.cells_on_edge,
+        mesh.cell_points,
+        mesh.lon_cell,
+        mesh.lat_cell,
+    )
+
+
+@numba.njit(cache=True, parallel=True)
+def _velocity_at_cells(
+    normal_velocity: Array,
+    n_edges_on_cell: Index,
+    edges_on_cell: Index,
+    cells_on_edge: Index,
+    points: Array,
+    longitude: Array,
+    latitude: Array,
+) -> tuple[Array, Array]:
+    zonal, meridional = np.empty(len(points)), np.empty(len(points))
+    for c in numba.prange(len(points)):
+        # The vectors of `mesh.geometry.sphere.east_north`, without arrays of them.
+        sin_lon, cos_lon, sin_lat = np.sin(longitude[c]), np.cos(longitude[c]), np.sin(latitude[c])
+        cos_lat = np.cos(latitude[c])
+        ee = en = nn = right_east = right_north = 0.0
+        for j in range(n_edges_on_cell[c]):
+            edge = edges_on_cell[c, j]
+            first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
+            x = points[second, 0] - points[first, 0]
+            y = points[second, 1] - points[first, 1]
+            z = points[second, 2] - points[first, 2]
+            length = np.sqrt(x * x + y * y + z * z)
+            eastward = (cos_lon * y - sin_lon * x) / length
+            northward = (cos_lat * z - sin_lat * (cos_lon * x + sin_lon * y)) / length
+            ee += eastward * eastward
+            en += eastward * northward
+            nn += northward * northward
+            right_east += eastward * normal_velocity[edge]
+            right_north += northward * normal_velocity[edge]
+        determinant = ee * nn - en * en
+        zonal[c] = (nn * right_east - en * right_north) / determinant
+        meridional[c] = (ee * right_north - en * right_east) / determinant
+    return zonal, meridional
+
+
+def vertex_to_cell(mesh: VoronoiMesh, values: Array) -> Array:
+    """Kite-weighted mean (n_cells,) of values at the vertices (n_vertices,) of each cell."""
+    return _vertex_to_cell(
+        values,
+        mesh.n_edges_on_cell,
+        mesh.vertices_on_cell,
+        mesh.cells_on_vertex,
+        mesh.kite_areas_on_vertex,
+        mesh.area_cell,
+    )
+
+
+@numba.njit(cache=True, parallel=True)
+def _vertex_to_cell(
+    values: Array,
+    n_edges_on_cell: Index,
+    vertices_on_cell: Index,
+    cells_on_vertex: Index,
+    kite_areas_on_vertex: Array,
+    area_cell: Array,
+) -> Array:
+    means = np.empty(len(area_cell))
+    for c in numba.prange(len(area_cell)):
+        total = 0.0
+        for j in range(n_edges_on_cell[c]):
+            v = vertices_on_cell[c, j]
+            for k in range(3):
+                if cells_on_vertex[v, k] == c:
+                    total += kite_areas_on_vertex[v, k] * values[v]
+        means[c] = total / area_cell[c]
+    return means

@@ -1,0 +1,112 @@
+"""How good a mesh is: distances between neighbours, shapes of triangles, centroid residual, areas."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.arrays import Array
+from mesh.density.named import Density, uniform
+from mesh.density.record import density_of
+from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
+from mesh.integrals.moments import masses_and_moments
+from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
+from mesh.triangulation.moving import Triangulation
+from mesh.voronoi_mesh import VoronoiMesh
+
+
+@dataclass(frozen=True)
+class Quality:
+    """The measures of Ju, Ringler and Gunzburger (2011), section 4, and some more.
+
+    `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
+    longest distance to a neighbour; `q` of a triangle with sides a, b, c is (b+c-a)(c+a-b)(a+b-c)/(abc), one if
+    equilateral. Distances are chords. `residual` is the largest distance between a generator that was free to move and
+    the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known;
+    `obtuse` counts Delaunay triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    """
+
+    cells: int
+    mu: float
+    sigma_avg: float
+    sigma_min: float
+    q_avg: float
+    q_min: float
+    residual: float
+    obtuse: int
+    area_ratio: float
+
+
+def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:
+    """Measure `mesh`; see `Quality`.
+
+    The residual is for the `density`, by default that of which the mesh tells (see `mesh.density.record`).
+    """
+    return quality_and_note(mesh, density)[0]
+
+
+def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple[Quality, str]:
+    """What `mesh_quality` gives, and what a reader must know of the residual; empty where there is nothing to add."""
+    density, note = density_of(mesh) if density is None else (density, "")
+    notes = [note] if note else []
+    if mesh.fixed_cells is not None:
+        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held are not counted")
+    return _measured(mesh, density), "; ".join(notes)
+
+
+def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
+    sigma, q = neighbour_distance_ratio(mesh), triangle_quality(mesh)
+    chords = edge_chords(mesh)
+    return Quality(
+        cells=mesh.n_cells,
+        mu=float(chords.max() / chords.min()),
+        sigma_avg=float(sigma.mean()),
+        sigma_min=float(sigma.min()),
+        q_avg=float(q.mean()),
+        q_min=float(q.min()),
+        residual=float("nan") if density is None else centroid_residual(mesh, density),
+        obtuse=int(np.count_nonzero(obtuse_triangles(mesh))),
+        area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
+    )
+
+
+def edge_chords(mesh: VoronoiMesh) -> Array:
+    """Straight distance between the two cells of each edge (n_edges,), on the unit sphere."""
+    points = mesh.cell_points / mesh.sphere_radius
+    difference = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
+    return np.sqrt(dot(difference, difference))
+
+
+def neighbour_distance_ratio(mesh: VoronoiMesh) -> Array:
+    """Shortest over longest distance to a neighbour, sigma (n_cells,)."""
+    chords = edge_chords(mesh)
+    inside = mesh.on_ring
+    distances = chords[np.where(inside, mesh.edges_on_cell, 0)]
+    return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
+
+
+def triangle_quality(mesh: VoronoiMesh) -> Array:
+    """The measure q of the Delaunay triangles (n_vertices,): twice the inscribed over the circumscribed radius."""
+    a, b, c = edge_chords(mesh)[mesh.edges_on_vertex].T
+    return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c)
+
+
+def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
+    """Whether each Delaunay triangle (n_vertices,) is obtuse, so that its circumcentre lies outside."""
+    squares = np.sort(edge_chords(mesh)[mesh.edges_on_vertex] ** 2, axis=1)
+    return squares[:, 2] > squares[:, 0] + squares[:, 1]
+
+
+def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
+    """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
+    points = normalize(mesh.cell_points)
+    triangulation = Triangulation(points, mesh.cells_on_vertex)
+    cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
+    if density is uniform:
+        _, moment, _ = masses_and_moments(*cells)
+        distances = arc_length(points, normalize(moment))
+    else:
+        distances = centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
+    if mesh.fixed_cells is not None:
+        distances = distances[~mesh.fixed_cells]
+    return float(distances.max(initial=0.0)) / mean_spacing(mesh.n_cells)

@@ -1,0 +1,142 @@
+"""What every valid mesh satisfies: consistent connectivity, metrics that belong to it, and the discrete identities.
+
+Connectivity is checked exactly; metrics and identities yield residuals, relative to the local size, that must
+stay below a tolerance. Errors name the first entities that offend, counted from 0.
+"""
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.conventions import MESH_VARIABLES, dimension_sizes
+from mesh.discrete.comparison import Difference, angle_difference, metric_differences
+from mesh.discrete.connectivity import validate_topology
+from mesh.discrete.identities import identity_residuals
+from mesh.discrete.metrics import compute_metrics
+from mesh.errors import MeshError, require
+from mesh.geometry.sphere import dot, normalize
+from mesh.voronoi_mesh import Metrics, Topology, VoronoiMesh
+
+OWN_TOLERANCE = 1e-11
+"""Largest residual of meshes made here."""
+
+OUTSIDE_TOLERANCE = 1e-6
+"""Largest residual of files from other programs (their converters leave relative noise of 1e-7), and largest difference
+between metrics and what the generators give: rounding of coordinates is magnified in a circumcentre."""
+
+REBUILD = "rebuild the metrics (--recompute-metrics, or recompute_metrics=True in Python) or correct the file"
+
+
+def validate_mesh(mesh: VoronoiMesh, tolerance: float = OWN_TOLERANCE, fresh_metrics: bool = False) -> dict[str, float]:
+    """Check everything; return the residuals of the discrete identities by name.
+
+    `tolerance` bounds those residuals. With `fresh_metrics`, the caller has just computed the metrics from the
+    generators, and they are not computed again to be compared. Raises `MeshError`, one sentence that names entities
+    and values, at the first thing that fails.
+    """
+    _check_shapes(mesh)
+    check_values(mesh)
+    validate_topology(mesh)
+    check_orientation(mesh.cell_points / mesh.sphere_radius, mesh)
+    exact = None if fresh_metrics else compute_metrics(normalize(mesh.cell_points), mesh)
+    return validate_metrics(mesh, exact, tolerance)
+
+
+def validate_metrics(mesh: VoronoiMesh, exact: Metrics | None, tolerance: float) -> dict[str, float]:
+    """Check the metrics on a valid topology; return the residuals of the discrete identities by name.
+
+    `exact` are the metrics on the unit sphere that follow from the generators, None where those of `mesh` do.
+    Raises `MeshError`.
+    """
+    _check_delaunay(mesh)
+    for difference in () if exact is None else (*metric_differences(mesh, exact), angle_difference(mesh, exact)):
+        require_small(difference)
+    residuals = identity_residuals(mesh)
+    for name, residual in residuals.items():
+        if not residual <= tolerance:
+            raise MeshError(
+                f"{name} holds only to {residual:.1e} instead of {tolerance:.0e}; "
+                "the metrics do not belong together, recompute them from the generators"
+            )
+    return residuals
+
+
+def require_small(difference: Difference, tolerance: float = OUTSIDE_TOLERANCE) -> None:
+    """Raise `MeshError` where metrics differ from what the generators give by more than `tolerance`."""
+    require(
+        difference.relative <= tolerance,
+        difference.place,
+        f"{difference.label} differs from what the generators give by up to {difference.in_words}; {REBUILD}",
+    )
+
+
+def _check_shapes(mesh: VoronoiMesh) -> None:
+    sizes = dimension_sizes(mesh)
+    for variable in MESH_VARIABLES:
+        expected = tuple(sizes[dimension] for dimension in variable.dimensions)
+        shape = getattr(mesh, variable.name).shape
+        if not variable.integer and shape != expected:
+            raise MeshError(f"{variable.file_name} has shape {shape} instead of {expected}")
+
+
+def check_values(mesh: VoronoiMesh) -> None:
+    """Check that all numbers are finite and that coordinates lie on the sphere of the stated radius.
+
+    Raises `MeshError`.
+    """
+    for variable in MESH_VARIABLES:
+        if not variable.integer:
+            require(
+                np.isfinite(getattr(mesh, variable.name)),
+                variable.dimensions[0][2:],
+                f"{variable.file_name} is not a finite number",
+            )
+    for place, points in (
+        ("cells", mesh.cell_points),
+        ("edges", mesh.edge_points),
+        ("vertices", mesh.vertex_points),
+    ):
+        require_on_sphere(points, mesh.sphere_radius, place)
+
+
+def require_on_sphere(points: Array, radius: float, place: str) -> None:
+    """Raise `MeshError` unless all points (n, 3) lie on the sphere of this radius."""
+    distance = np.sqrt(dot(points, points))
+    require(
+        np.abs(distance / radius - 1.0) <= OUTSIDE_TOLERANCE,
+        place,
+        f"the coordinates are not at sphere_radius = {radius:g} from the origin",
+    )
+
+
+def check_orientation(points: Array, topology: Topology) -> None:
+    """Check that triangles and rings run counter-clockwise for generators `points` (n_cells, 3), unit vectors.
+
+    Raises `MeshError`.
+    """
+    a, b, c = (points[topology.cells_on_vertex[:, k]] for k in range(3))
+    require(dot(a, np.cross(b - a, c - a)) > 0.0, "vertices", "cellsOnVertex does not run counter-clockwise")
+    inside = topology.on_ring
+    following = np.take_along_axis(
+        topology.cells_on_cell, (np.arange(topology.max_edges) + 1) % topology.n_edges_on_cell[:, None], axis=1
+    )
+    center = points[:, None, :]
+    spokes = points[np.where(inside, topology.cells_on_cell, 0)] - center
+    following_spokes = points[np.where(inside, following, 0)] - center
+    turns = dot(center, np.cross(spokes, following_spokes))
+    require((turns > 0.0) | ~inside, "cells", "edgesOnCell does not run counter-clockwise")
+
+
+def _check_delaunay(mesh: VoronoiMesh) -> None:
+    """Edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
+    points, vertices = mesh.cell_points / mesh.sphere_radius, mesh.vertex_points / mesh.sphere_radius
+    normal = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
+    along = vertices[mesh.vertices_on_edge[:, 1]] - vertices[mesh.vertices_on_edge[:, 0]]
+    tangent = np.cross(mesh.edge_points / mesh.sphere_radius, normal)
+    # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
+    slack = OUTSIDE_TOLERANCE * dot(normal, normal)
+    require(
+        dot(along, tangent) >= -slack,
+        "edges",
+        "the vertices of the edge lie against its tangent: the triangles are not the Delaunay triangulation of the "
+        "cells, or vertices are out of place; build the mesh anew from its generators",
+    )

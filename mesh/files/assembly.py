@@ -1,0 +1,227 @@
+"""A mesh from what its file holds: sorted where the order is another, rebuilt where that does no harm."""
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.arrays import Array
+from mesh.conventions import BY_NAME
+from mesh.discrete.comparison import angle_difference, angles_in_place, metric_differences
+from mesh.discrete.metrics import compute_metrics
+from mesh.discrete.validate import OUTSIDE_TOLERANCE, check_values, require_on_sphere, require_small
+from mesh.errors import MeshError, require
+from mesh.files.arrange import arrange_kites, arrange_weights, arranged_topology, reordered, topology_in_order
+from mesh.files.mesh_file import SPARE, FileContent
+from mesh.geometry.sphere import dot, from_lonlat, normalize
+from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
+
+GENERATORS = ("x_cell", "y_cell", "z_cell")
+ROUNDING_GROWTH = 20.0
+"""How many times larger than the rounding of generators the displacement of a circumcentre may be."""
+
+MOST_LISTED = 6
+"""Arrays that a warning names."""
+
+ON_EDGES = tuple(name for name, variable in BY_NAME.items() if "n_edges" in (variable.dimensions[0], variable.of))
+"""Arrays that mean something only where the edges have the numbers of the file."""
+
+
+@dataclass
+class Changes:
+    """What was done to the content of a file, in words."""
+
+    said: list[str] = field(default_factory=list)
+    sorted: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    replaced: list[str] = field(default_factory=list)
+
+    @property
+    def in_words(self) -> str:
+        """One line, empty where nothing was done."""
+        parts = list(self.said)
+        if self.sorted:
+            parts.append(f"sorted {_listed(self.sorted)}")
+        if self.missing:
+            parts.append(f"made {_listed(self.missing)}, which the file lacks, from the generators and triangles")
+        if self.replaced:
+            parts.append(f"replaced {_listed(self.replaced)} by what the generators give")
+        return "; ".join(parts)
+
+
+def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[VoronoiMesh, Changes]:
+    """The mesh of a file, not yet validated for its identities, and what was changed on the way.
+
+    Needed are generators and triangles. Raises `MeshError` where they are missing, where connectivity contradicts
+    itself, or where metrics that the solver uses are not those of the generators.
+    """
+    arrays, changes = dict(content.arrays), Changes()
+    points, radius = _generators(arrays, content.radius, changes)
+    topology = _topology(arrays, points, changes)
+    exact = compute_metrics(points, topology)
+    density = _density(arrays, len(points), changes)
+    topology_arrays = {name: getattr(topology, name) for name in TOPOLOGY_NAMES}
+    unit = VoronoiMesh(
+        **topology_arrays,
+        **{name: getattr(exact, name) for name in METRICS_NAMES},
+        mesh_density=density,
+        sphere_radius=1.0,
+    )
+    rebuilt = unit.scaled(radius)
+    if recompute_metrics:
+        return rebuilt, changes
+    metrics = _metrics_of_file(arrays, topology, exact)
+    if content.single_precision:
+        _require_metrics_but_for_rounding(replace(rebuilt, **metrics), exact)  # type: ignore[arg-type]
+        changes.said.append("coordinates are in single precision, so that all metrics are taken from them")
+        return rebuilt, changes
+    return _with_metrics_of_file(rebuilt, exact, metrics, changes), changes
+
+
+def _generators(arrays: dict[str, NDArray], attribute: object, changes: Changes) -> tuple[Array, float]:
+    """Unit vectors (n_cells, 3) of the generators, and the radius of the sphere."""
+    if all(name in arrays for name in GENERATORS):
+        points = np.stack([arrays[name] for name in GENERATORS], axis=1)
+        for name in GENERATORS:
+            require(np.isfinite(arrays[name]), "cells", f"{BY_NAME[name].file_name} is not a finite number")
+        distance = np.sqrt(dot(points, points))
+        radius = _positive(attribute)
+        if radius is None or np.any(np.abs(distance / radius - 1.0) > OUTSIDE_TOLERANCE):
+            radius = _radius_of(points, distance, attribute, changes)
+        return _unit_vectors(points, distance), radius
+    if not all(name in arrays for name in ("lon_cell", "lat_cell")):
+        raise MeshError(
+            "xCell, yCell and zCell are missing, and lonCell and latCell too; a mesh file must have its generators"
+        )
+    longitude, latitude = arrays["lon_cell"], arrays["lat_cell"]
+    require(np.isfinite(longitude), "cells", "lonCell is not a finite number")
+    require(np.isfinite(latitude), "cells", "latCell is not a finite number")
+    require(np.abs(latitude) <= 0.5 * np.pi + OUTSIDE_TOLERANCE, "cells", "latCell is beyond a pole (radians)")
+    radius = _positive(attribute)
+    if radius is None:
+        radius = 1.0
+        changes.said.append("without a sphere_radius the sphere is taken to have radius 1")
+    return from_lonlat(longitude, latitude), radius
+
+
+def _unit_vectors(points: Array, distance: Array) -> Array:
+    """The points (n, 3) on the unit sphere; those that are there but for round-off stay as they are, bit for bit."""
+    there = np.abs(distance - 1.0) <= 2.0 * np.finfo(float).eps
+    return np.where(there[:, None], points, normalize(points))
+
+
+def _positive(attribute: object) -> float | None:
+    """The attribute as a positive number, None where it is none."""
+    try:
+        number = float(attribute)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    return number if np.isfinite(number) and number > 0.0 else None
+
+
+def _radius_of(points: Array, distance: Array, attribute: object, changes: Changes) -> float:
+    """The radius of the sphere that the generators lie on, whatever the attribute says."""
+    radius = float(np.median(distance))
+    if not radius > 0.0:
+        raise MeshError("xCell, yCell and zCell are zero; a mesh file must have its generators")
+    require_on_sphere(points, radius, "cells")
+    # Rounding of the coordinates is no radius of its own.
+    radius = 1.0 if abs(radius - 1.0) <= OUTSIDE_TOLERANCE else float(f"{radius:.10g}")
+    stated = "missing" if attribute is None else str(attribute)
+    changes.said.append(
+        f"the attribute sphere_radius is {stated}, but the coordinates lie at {radius:.10g}, which counts"
+    )
+    return radius
+
+
+def _topology(arrays: dict[str, NDArray], points: Array, changes: Changes) -> Topology:
+    """Connectivity in our order; `arrays` loses what means nothing without the numbers of the edges."""
+    if "cells_on_vertex" not in arrays:
+        raise MeshError(
+            "the variable cellsOnVertex is missing; a mesh file must have its triangles (mesh_from_points makes a mesh "
+            "of generators alone)"
+        )
+    boundary = arrays.pop("boundary_vertex", None)
+    if boundary is not None and np.any(boundary != 0):
+        changes.replaced.append("boundaryVertex (a closed sphere has none)")
+    if "cells_on_edge" not in arrays:
+        for name in ON_EDGES:
+            arrays.pop(name, None)
+    missing = [name for name in TOPOLOGY_NAMES if name != "boundary_vertex" and name not in arrays]
+    if missing:
+        changes.missing.extend(BY_NAME[name].file_name for name in missing)
+    inner = np.zeros(len(arrays["cells_on_vertex"]), dtype=np.int32)
+    topology = topology_in_order({**arrays, "boundary_vertex": inner}, points)
+    if topology is None:
+        topology = arranged_topology(arrays, points)
+        changes.sorted.extend(reordered(arrays, topology))
+    return topology
+
+
+def _density(arrays: dict[str, NDArray], n_cells: int, changes: Changes) -> Array:
+    """The density at the generators; one everywhere where the file tells none."""
+    density = arrays.get("mesh_density")
+    if density is None:
+        return np.ones(n_cells)
+    if not np.isfinite(density).all():
+        changes.said.append("meshDensity is not finite everywhere and taken to be 1")
+        return np.ones(n_cells)
+    return density
+
+
+def _metrics_of_file(arrays: dict[str, NDArray], topology: Topology, exact: Metrics) -> dict[str, NDArray]:
+    """The metrics that the file has, in the order of the topology."""
+    metrics = {name: arrays[name] for name in METRICS_NAMES if name in arrays}
+    if "kite_areas_on_vertex" in metrics and not np.array_equal(arrays["cells_on_vertex"], topology.cells_on_vertex):
+        metrics["kite_areas_on_vertex"] = arrange_kites(
+            metrics["kite_areas_on_vertex"], arrays["cells_on_vertex"], topology
+        )
+    if "weights_on_edge" in metrics:
+        if "edges_on_edge" not in arrays:
+            del metrics["weights_on_edge"]
+        elif arrays["edges_on_edge"].shape != topology.edges_on_edge.shape or not np.array_equal(
+            arrays["edges_on_edge"], topology.edges_on_edge
+        ):
+            metrics["weights_on_edge"] = arrange_weights(
+                metrics["weights_on_edge"], arrays, topology, exact.weights_on_edge
+            )
+    for place in ("cell", "edge", "vertex"):
+        longitude = metrics.get(f"lon_{place}")
+        if longitude is not None and not np.all((longitude >= 0.0) & (longitude < 2.0 * np.pi)):
+            metrics[f"lon_{place}"] = longitude % (2.0 * np.pi)
+    return metrics
+
+
+def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None:
+    """Raise `MeshError` where metrics differ by more than the rounding of coordinates to single precision explains."""
+    rounding = ROUNDING_GROWTH * float(np.finfo(np.float32).eps) / float(exact.dc_edge.min())
+    for difference in metric_differences(mesh, exact):
+        if not SPARE.issuperset(difference.names):
+            require_small(difference, OUTSIDE_TOLERANCE + rounding)
+
+
+def _with_metrics_of_file(
+    rebuilt: VoronoiMesh, exact: Metrics, metrics: dict[str, NDArray], changes: Changes
+) -> VoronoiMesh:
+    """`rebuilt` with the metrics of the file, but for those that no step depends on where they are wrong."""
+    changes.missing.extend(BY_NAME[name].file_name for name in METRICS_NAMES if name not in metrics)
+    mesh = replace(rebuilt, **metrics)  # type: ignore[arg-type]
+    for difference in metric_differences(mesh, exact):
+        if not SPARE.issuperset(difference.names):
+            require_small(difference)
+        elif np.any(difference.relative > OUTSIDE_TOLERANCE):
+            changes.replaced.append(f"{difference.label} (differed by up to {difference.in_words})")
+            mesh = replace(mesh, **{name: getattr(rebuilt, name) for name in difference.names})
+    angle = angle_difference(mesh, exact)
+    if np.any(angle.relative > OUTSIDE_TOLERANCE):
+        if "angle_edge" in metrics:
+            changes.replaced.append(f"{angle.label} (differed by up to {angle.in_words})")
+        mesh = replace(mesh, angle_edge=angles_in_place(mesh, exact))
+    check_values(mesh)
+    return mesh
+
+
+def _listed(names: list[str]) -> str:
+    if len(names) > MOST_LISTED:
+        return f"{', '.join(names[:MOST_LISTED])} and {len(names) - MOST_LISTED} more"
+    return ", ".join(names)

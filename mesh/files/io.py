@@ -1,0 +1,139 @@
+"""MPAS mesh files, read and written; the only place that knows indices that count from 1."""
+
+import hashlib
+import warnings
+from dataclasses import replace
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Literal
+
+import netCDF4
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
+from mesh.density.record import read_generation, write_generation
+from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
+from mesh.errors import MeshError, MeshWarning
+from mesh.files.assembly import assembled_mesh
+from mesh.files.mesh_file import FileContent, read_content
+from mesh.safe_files import AnyPath, dataset, written_aside
+from mesh.voronoi_mesh import VoronoiMesh
+
+PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}
+
+FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
+    "netcdf4": "NETCDF4",
+    "cdf5": "NETCDF3_64BIT_DATA",
+    "classic": "NETCDF3_64BIT_OFFSET",
+}
+"""Formats of mesh files: HDF5, and what programs read that are built with PnetCDF."""
+
+
+def mesh_hash(mesh: VoronoiMesh) -> str:
+    """SHA-256, in hexadecimal, of every array of the mesh and its radius."""
+    digest = hashlib.sha256(np.float64(mesh.sphere_radius).tobytes())
+    for variable in MESH_VARIABLES:
+        digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).tobytes())
+    return digest.hexdigest()
+
+
+def write_mesh(mesh: VoronoiMesh, path: AnyPath, history: str = "", file_format: str = "netcdf4") -> None:
+    """Write an MPAS mesh file (MPAS Mesh Specification 1.0) in one of `FORMATS`.
+
+    `history` tells how the mesh was made. Raises `MeshError` where the file cannot be written.
+    """
+    path = Path(path)
+    require_format(file_format)
+    try:
+        with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
+            file.createDimension("Time", None)  # of no length; some readers of the format ask for it
+            stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
+            file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
+            write_mesh_variables(file, mesh)
+            write_generation(file, mesh)
+    except (OSError, RuntimeError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
+
+
+def require_format(file_format: str) -> None:
+    """Raise `MeshError` where there is no such format of mesh files."""
+    if file_format not in FORMATS:
+        raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
+
+
+def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
+    """Global attributes that MPAS readers expect."""
+    return {
+        "on_a_sphere": "YES",
+        "sphere_radius": float(mesh.sphere_radius),
+        "is_periodic": "NO",
+        "mesh_spec": "1.0",
+        "Conventions": "MPAS",
+        "source": "trisk",
+        "history": history,
+        "file_id": mesh_hash(mesh)[:10],
+        "density_name": mesh.density_name,
+    }
+
+
+def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
+    """Define the mesh's dimensions in an open file and write its arrays, or those in `names` only."""
+    sizes = dimension_sizes(mesh)
+    for name, size in sizes.items():
+        file.createDimension(DIMENSIONS[name], size)
+    for place, dimension in PLACES.items():
+        identifier = file.createVariable(f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],))
+        identifier.long_name = f"number of each {place}"
+        identifier[:] = np.arange(1, sizes[dimension] + 1)
+    for variable in MESH_VARIABLES:
+        if names is not None and variable.name not in names:
+            continue
+        dimensions = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
+        target = file.createVariable(variable.file_name, "i4" if variable.integer else "f8", dimensions)
+        target.setncatts({"units": variable.units, "long_name": variable.long_name})
+        values = getattr(mesh, variable.name)
+        target[:] = values + 1 if variable.is_index else values
+
+
+def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
+    """Read and validate an MPAS mesh file of any origin: classic, 64-bit or NetCDF-4, of any sphere radius.
+
+    Rings in another order are sorted, and what is missing or no step depends on is rebuilt from the generators and
+    triangles. With `recompute_metrics`, all lengths, areas, kites, angles and weights are. Warns with `MeshWarning`, in
+    one line, of what was changed and where the identities of the mesh hold to `OUTSIDE_TOLERANCE` but not to
+    `OWN_TOLERANCE`; raises `MeshError` where the file cannot be read or is not a valid mesh.
+    """
+    path = Path(path)
+    if path.exists() and not path.is_file():
+        raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
+    try:
+        content, generation = _read(path)
+        mesh, changes = assembled_mesh(content, recompute_metrics)
+        residuals = validate_metrics(mesh, None, OUTSIDE_TOLERANCE)
+    except MeshError as error:
+        raise MeshError(f"{path}: {error}") from error
+    name, source, fixed = generation
+    mesh = replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
+    said = [changes.in_words] if changes.in_words else []
+    worst = max(residuals, key=lambda name: residuals[name])
+    if residuals[worst] > OWN_TOLERANCE:
+        said.append(f"{worst} holds only to {residuals[worst]:.1e}; recompute the metrics for better conservation")
+    if said:
+        warnings.warn(f"{path}: {'; '.join(said)}", MeshWarning, stacklevel=2)
+    return mesh
+
+
+def _read(path: Path) -> tuple[FileContent, tuple[str, str, NDArray[np.bool_] | None]]:
+    """What a mesh file holds, and how the mesh was generated."""
+    try:
+        with dataset(path) as file:
+            file.set_auto_mask(False)
+            content = read_content(file)
+            return content, read_generation(file, content.n_cells)
+    except MeshError:
+        raise
+    except (OSError, RuntimeError, IndexError, ValueError) as error:
+        reason = "no such file" if not path.exists() else f"not a readable NetCDF file ({error})"
+        raise MeshError(f"{reason}; give an MPAS mesh file") from error

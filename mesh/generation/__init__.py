@@ -1,0 +1,1 @@
+"""Generators of SCVTs: starting points, descents, nested and well-centred meshes."""

@@ -1,0 +1,131 @@
+"""Starting points on the unit sphere: bisection of the icosahedron, the Fibonacci spiral, and random points."""
+
+import numpy as np
+
+from mesh.arrays import Array, Index
+from mesh.density.named import Density, density_at, uniform
+from mesh.density.scaling import largest_value, within_range
+from mesh.errors import MeshError
+from mesh.geometry.sphere import fibonacci_points, normalize
+from mesh.triangulation.delaunay import delaunay
+from mesh.triangulation.half_edges import build_twins
+
+MINIMUM_CELLS, MAXIMUM_CELLS = 12, (2**31 - 1) // 6
+STARTS = ("icosahedral", "fibonacci", "random", "random-root")
+DEFAULT_SEED = 0
+
+MARGIN = 1.05
+SMALLEST_ACCEPTANCE = 1e-3
+
+
+def icosahedron() -> Array:
+    """Vertices (12, 3) of the regular icosahedron at the cyclic permutations of (0, +-1, +-golden ratio).
+
+    The poles are midpoints of edges. With vertices there, zonal flows would follow the symmetry of the mesh and
+    look more accurate than flows along any other axis.
+    """
+    golden = 0.5 * (1.0 + np.sqrt(5.0))
+    vertices = [(0.0, a, b * golden) for a in (-1.0, 1.0) for b in (-1.0, 1.0)]
+    return normalize(np.array([np.roll(vertex, shift) for vertex in vertices for shift in range(3)]))
+
+
+def bisect(points: Array, triangles: Index) -> tuple[Array, Index, Index]:
+    """Insert the midpoint of every side; each triangle becomes four.
+
+    Takes points (n, 3) and closed triangles (m, 3). Returns points (4 n - 6, 3), the old ones first, triangles
+    (4 m, 3) of the same orientation, the children of triangle t being 4 t to 4 t + 3, and the two old points
+    (3 n - 6, 2) between which each new one lies.
+    """
+    twins = build_twins(triangles, len(points)).ravel()
+    leading = np.flatnonzero(np.arange(triangles.size) < twins)
+    middles = np.empty(triangles.size, np.int32)
+    middles[leading] = len(points) + np.arange(len(leading), dtype=np.int32)
+    middles[twins[leading]] = middles[leading]
+    ends = np.stack([np.roll(triangles, -1, axis=1).ravel()[leading], np.roll(triangles, 1, axis=1).ravel()[leading]])
+    refined = np.concatenate([points, normalize(points[ends[0]] + points[ends[1]])])
+    a, b, c = triangles.T
+    opposite_a, opposite_b, opposite_c = middles.reshape(-1, 3).T
+    children = [
+        (a, opposite_c, opposite_b),
+        (opposite_c, b, opposite_a),
+        (opposite_b, opposite_a, c),
+        (opposite_a, opposite_b, opposite_c),
+    ]
+    fine = np.stack([np.stack(child, axis=1) for child in children], axis=1).reshape(-1, 3)
+    return refined, fine.astype(np.int32), ends.T.astype(np.int32)
+
+
+def icosahedral_mesh(level: int) -> tuple[Array, Index]:
+    """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times and triangles between them.
+
+    Level 0 is the icosahedron itself. The triangles (20*4^level, 3) are the bisected ones, which are Delaunay.
+    """
+    points = icosahedron()
+    triangles = delaunay(points)
+    for _ in range(level):
+        points, triangles, _ = bisect(points, triangles)
+    return points, triangles
+
+
+def icosahedral_points(level: int) -> Array:
+    """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times; those of each level come first."""
+    return icosahedral_mesh(level)[0]
+
+
+def icosahedral_level(cells: int) -> int | None:
+    """The bisection level that has this number of cells, or None where there is none."""
+    level = 0
+    while 10 * 4**level + 2 < cells:
+        level += 1
+    return level if 10 * 4**level + 2 == cells else None
+
+
+def random_points(count: int, density: Density, generator: np.random.Generator) -> Array:
+    """Points (count, 3) drawn from `density` by rejection with a seeded numpy generator.
+
+    Raises `MeshError` where the density is negative, not finite, or zero nearly everywhere.
+    """
+    density = within_range(density)
+    bound = MARGIN * largest_value(density)
+    drawn: list[Array] = []
+    missing, accepted = count, 0.5
+    while missing > 0:
+        points = normalize(generator.normal(size=(int(1.2 * missing / accepted) + 100, 3)))
+        kept = points[generator.random(len(points)) * bound < density_at(density, points)]
+        drawn.append(kept[:missing])
+        missing -= len(drawn[-1])
+        accepted = max(len(kept) / len(points), SMALLEST_ACCEPTANCE)
+    return np.concatenate(drawn)
+
+
+def starting_points(
+    cells: int, start: str | None = None, density: Density = uniform, seed: int = DEFAULT_SEED
+) -> Array:
+    """Points (cells, 3) to start from, by the name of the `start`.
+
+    `icosahedral` bisection (the default where it has this number of cells), `fibonacci` (the default elsewhere),
+    `random` points drawn from the density, or `random-root` ones drawn from its square root, which converge sooner.
+    Raises `MeshError` for fewer than 12 cells, an unknown start, or a number the icosahedron does not give.
+    """
+    if cells < MINIMUM_CELLS:
+        raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {MINIMUM_CELLS}")
+    if cells > MAXIMUM_CELLS:
+        raise MeshError(f"a mesh of {cells} cells has too many half-edges to number; ask for at most {MAXIMUM_CELLS}")
+    level = icosahedral_level(cells)
+    if start is None:
+        start = "fibonacci" if level is None else "icosahedral"
+    if start == "fibonacci":
+        return fibonacci_points(cells)
+    if start == "random":
+        return random_points(cells, density, np.random.default_rng(seed))
+    if start == "random-root":
+        return random_points(cells, lambda points: np.sqrt(density_at(density, points)), np.random.default_rng(seed))
+    if start != "icosahedral":
+        raise MeshError(f"there is no start named '{start}'; choose one of {', '.join(STARTS)}")
+    if level is None:
+        below = int(np.log(max(cells - 2, 10) / 10) / np.log(4))
+        raise MeshError(
+            f"bisection of the icosahedron gives no mesh of {cells} cells; "
+            f"choose {10 * 4**below + 2} or {10 * 4 ** (below + 1) + 2}, or start from fibonacci"
+        )
+    return icosahedral_points(level)

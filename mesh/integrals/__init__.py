@@ -1,0 +1,1 @@
+"""Integrals over Voronoi cells: masses, moments and means."""

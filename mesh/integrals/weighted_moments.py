@@ -1,0 +1,226 @@
+"""Masses, moments, energy and gradient of Voronoi cells under a density.
+
+A cell is the union of the spherical triangles (x, c, c') of its generator x and successive corners c, c'. With
+u = c - x, v = c' - x and p = x + s u + t v a point of the flat triangle, y = p / |p| lies on the sphere, and its
+element of area is x.(u x v) / |p|^3 ds dt exactly. A symmetric quadrature rule of order five on the flat triangle
+(Dunavant 1985) gives
+
+    mass    m = sum of weight * density(y),
+    moment  M = sum of weight * density(y) * y,
+    energy  E = sum of weight * density(y) * |y - x|^2.
+
+Where a triangle lies outside of the cell, a corner being beyond another side, its area is negative, as it should be.
+Tangential parts and |y - x|^2 come from q = s u + t v, which is small, so that nothing cancels.
+
+The quadrature points of a chunk of cells are written by one kernel, the density, any callable, is applied to them, and
+a second kernel sums.
+"""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.arrays import Array, Index
+from mesh.density.named import Density, density_at
+from mesh.density.scaling import within_range
+from mesh.errors import MeshError
+from mesh.geometry.sphere import to_lonlat
+from mesh.integrals.moments import BLOCK
+
+Vector = tuple[float, float, float]
+
+CHUNK = 16384
+"""Cells whose quadrature points are held at a time."""
+
+
+def _orbit(weight: float, twice: float) -> list[tuple[float, float, float]]:
+    """Rows (s, t, weight) of the three points with two barycentric coordinates equal to `twice`."""
+    once = 1.0 - 2.0 * twice
+    return [(twice, twice, 0.5 * weight), (once, twice, 0.5 * weight), (twice, once, 0.5 * weight)]
+
+
+RULE = np.array(
+    [
+        (1 / 3, 1 / 3, 0.5 * 0.225),
+        *_orbit((155 + np.sqrt(15)) / 1200, (6 + np.sqrt(15)) / 21),
+        *_orbit((155 - np.sqrt(15)) / 1200, (6 - np.sqrt(15)) / 21),
+    ]
+)
+"""Seven points of order five, exact for polynomials of degree five on the triangle s, t >= 0, s + t <= 1."""
+
+
+@numba.njit(cache=True)
+def _arms(points: Array, circumcenters: Array, cell: int, triangle: int) -> Vector:
+    """Vector from the generator of a cell to one of its corners."""
+    return (
+        circumcenters[triangle, 0] - points[cell, 0],
+        circumcenters[triangle, 1] - points[cell, 1],
+        circumcenters[triangle, 2] - points[cell, 2],
+    )
+
+
+@numba.njit(parallel=True, cache=True)
+def _quadrature_points(
+    points: Array, circumcenters: Array, ring_starts: Index, rings: Index, first: int, last: int, nodes: Array
+) -> None:
+    """Write the quadrature points of the cells first to last - 1 to `nodes`, ring after ring."""
+    for cell in numba.prange(first, last):
+        start, stop = ring_starts[cell], ring_starts[cell + 1]
+        u = _arms(points, circumcenters, cell, rings[stop - 1])
+        row = len(RULE) * (start - ring_starts[first])
+        for slot in range(start, stop):
+            v = _arms(points, circumcenters, cell, rings[slot])
+            for node in range(len(RULE)):
+                s, t = RULE[node, 0], RULE[node, 1]
+                x = points[cell, 0] + s * u[0] + t * v[0]
+                y = points[cell, 1] + s * u[1] + t * v[1]
+                z = points[cell, 2] + s * u[2] + t * v[2]
+                factor = 1.0 / np.sqrt(x * x + y * y + z * z)
+                nodes[row, 0], nodes[row, 1], nodes[row, 2] = factor * x, factor * y, factor * z
+                row += 1
+            u = v
+
+
+@numba.njit(cache=True)
+def _triple(points: Array, cell: int, u: Vector, v: Vector) -> float:
+    """Triple product x.(u x v) for the generator x of a cell."""
+    return (
+        points[cell, 0] * (u[1] * v[2] - u[2] * v[1])
+        + points[cell, 1] * (u[2] * v[0] - u[0] * v[2])
+        + points[cell, 2] * (u[0] * v[1] - u[1] * v[0])
+    )
+
+
+@numba.njit(parallel=True, cache=True)
+def _sum_cells(
+    points: Array,
+    circumcenters: Array,
+    ring_starts: Index,
+    rings: Index,
+    first: int,
+    last: int,
+    values: Array,
+    sums: Array,
+) -> None:
+    """Write the integrals of the cells first to last - 1, from values of the density at the nodes, to rows of `sums`.
+
+    Columns: mass; tangential part of the moment (three); x.M; energy.
+    """
+    for cell in numba.prange(first, last):
+        start, stop = ring_starts[cell], ring_starts[cell + 1]
+        px, py, pz = points[cell, 0], points[cell, 1], points[cell, 2]
+        u = _arms(points, circumcenters, cell, rings[stop - 1])
+        row = len(RULE) * (start - ring_starts[first])
+        mass, radial, energy = 0.0, 0.0, 0.0
+        mx, my, mz = 0.0, 0.0, 0.0
+        for slot in range(start, stop):
+            v = _arms(points, circumcenters, cell, rings[slot])
+            area = _triple(points, cell, u, v)
+            for node in range(len(RULE)):
+                s, t = RULE[node, 0], RULE[node, 1]
+                qx = s * u[0] + t * v[0]
+                qy = s * u[1] + t * v[1]
+                qz = s * u[2] + t * v[2]
+                along = px * qx + py * qy + pz * qz
+                square = qx * qx + qy * qy + qz * qz
+                inverse = 1.0 / np.sqrt(1.0 + 2.0 * along + square)
+                weight = RULE[node, 2] * area * values[row] * inverse**3
+                cosine = (1.0 + along) * inverse
+                mass += weight
+                radial += weight * cosine
+                energy += weight * 2.0 * (square - along * along) * inverse**2 / (1.0 + cosine)
+                mx += weight * inverse * (qx - along * px)
+                my += weight * inverse * (qy - along * py)
+                mz += weight * inverse * (qz - along * pz)
+                row += 1
+            u = v
+        sums[cell, 0], sums[cell, 4], sums[cell, 5] = mass, radial, energy
+        sums[cell, 1], sums[cell, 2], sums[cell, 3] = mx, my, mz
+
+
+@numba.njit(parallel=True, cache=True)
+def _gradient_and_partials(
+    sums: Array,
+    fixed: NDArray[np.bool_],
+    direction: Array,
+    old_weights: Array,
+    gradient: Array,
+    weights: Array,
+    partials: Array,
+) -> None:
+    """As `moments.evaluate`, from the sums (n, 6); `fixed` cells have no gradient and no part in the residual."""
+    for block in numba.prange(len(partials)):
+        energy, slope, largest = 0.0, 0.0, 0.0
+        for cell in range(block * BLOCK, min((block + 1) * BLOCK, len(sums))):
+            radial = sums[cell, 4]
+            weights[cell] = 1.0 / np.sqrt(2.0 * radial)
+            energy += sums[cell, 5]
+            if fixed[cell]:
+                gradient[cell, 0], gradient[cell, 1], gradient[cell, 2] = 0.0, 0.0, 0.0
+                continue
+            square = 0.0
+            for axis in range(3):
+                component = sums[cell, 1 + axis]
+                gradient[cell, axis] = -2.0 * weights[cell] * component
+                slope -= 2.0 * old_weights[cell] * component * direction[cell, axis]
+                square += component * component
+            largest = max(largest, square / (radial * radial))
+        partials[block, 0], partials[block, 1], partials[block, 2] = energy, slope, largest
+
+
+class WeightedCells:
+    """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move.
+
+    Where the density is extremely large or small, the integrals are those of a multiple of it.
+    """
+
+    def __init__(self, density: Density, n_cells: int, fixed: NDArray[np.bool_] | None = None) -> None:
+        self._density = within_range(density)
+        self._sums = np.empty((n_cells, 6))
+        self._fixed = np.zeros(n_cells, bool) if fixed is None else fixed
+        self._nodes = np.empty((0, 3))
+
+    def integrate(self, points: Array, circumcenters: Array, ring_starts: Index, rings: Index) -> Array:
+        """Mass, tangential moment (three), x.M and energy of all cells, (n, 6), in a buffer that the next call reuses.
+
+        Raises `MeshError` where the density is negative, not finite or zero on a whole cell.
+        """
+        for first in range(0, len(points), CHUNK):
+            last = min(first + CHUNK, len(points))
+            count = len(RULE) * int(ring_starts[last] - ring_starts[first])
+            if len(self._nodes) < count:
+                self._nodes = np.empty((count, 3))
+            cells, nodes = (points, circumcenters, ring_starts, rings, first, last), self._nodes[:count]
+            _quadrature_points(*cells, nodes)
+            _sum_cells(*cells, density_at(self._density, nodes), self._sums)
+        empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
+        if len(empty):
+            longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[empty[:1]]))
+            raise MeshError(
+                f"the density is zero on the whole cell at longitude {longitude:.2f} and latitude {latitude:.2f} "
+                "degrees; give it a floor above zero"
+            )
+        return self._sums
+
+    def evaluate(
+        self,
+        points: Array,
+        circumcenters: Array,
+        ring_starts: Index,
+        rings: Index,
+        direction: Array,
+        old_weights: Array,
+        gradient: Array,
+        weights: Array,
+        partials: Array,
+    ) -> None:
+        """What `moments.evaluate` does, under the density and with the fixed generators left out."""
+        self.integrate(points, circumcenters, ring_starts, rings)
+        _gradient_and_partials(self._sums, self._fixed, direction, old_weights, gradient, weights, partials)
+
+
+def centroid_distances(sums: Array) -> Array:
+    """Distances (n,), chords, from generators to constrained centroids, from what `WeightedCells.integrate` gives."""
+    square = (sums[:, 1:4] ** 2).sum(axis=1) / sums[:, 4] ** 2
+    root = np.sqrt(1.0 + square)
+    return np.sqrt(2.0 * square / (root * (1.0 + root)))

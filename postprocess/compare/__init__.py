@@ -1,0 +1,1 @@
+"""Norms of differences between runs, meshes and references."""

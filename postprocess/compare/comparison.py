@@ -1,0 +1,234 @@
+"""Compare runs of one case, on the same or on different meshes, with each other or with a solution of the case.
+
+Fields are compared where the run has them, so that its errors are not blurred by interpolation: thickness at cell
+centres (less the constant `background_depth` of the case), vorticity at vertices under the areas of the triangles, and
+velocity twice. `velocity` is the vector of Williamson et al. (1992) at cell centres, reconstructed from the normal
+velocities of a cell's edges: this averages the noise from edge to edge and adds an error of second order of its own.
+`normal_velocity`, at edges, is what the model predicts, without either; it is given where the reference has a velocity
+at the edges, that is, where it is not a run.
+"""
+
+import os
+import warnings
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from functools import partial
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.integrals.quadrature import sample_cells
+from mesh.safe_files import AnyPath
+from postprocess.compare.norms import Norms, scalar_norms, vector_norms
+from postprocess.compare.solutions import RunSolution, Solution, case_of, choose_solution, require_same_problem
+from postprocess.runs.reading import DAY_TOLERANCE, Run, days_in_words, days_of_both, read_run
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import SetupError
+
+SHOWN_DIAGNOSTICS = (
+    "mass_change",
+    "total_energy_change",
+    "potential_enstrophy_change",
+    "absolute_vorticity_change",
+    "max_speed",
+)
+"""Diagnostics shown beside the norms; see `swe.output.files.SERIES`."""
+
+
+@dataclass(frozen=True)
+class Fields:
+    """What is compared on one mesh: thickness and velocity at cells, vorticity at vertices, in SI units.
+
+    `normal_velocity`, at edges, is None where only a reconstruction of it is known.
+    """
+
+    thickness: Array
+    velocity: tuple[Array, Array]
+    vorticity: Array
+    normal_velocity: Array | None
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One run on one day: norms by field, empty for the run that is the reference, and diagnostics by name."""
+
+    run: Run
+    day: float
+    norms: dict[str, Norms]
+    conservation: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Entries of all runs on all days, day by day, and the solution that they are compared with."""
+
+    solution: Solution
+    days: tuple[float, ...]
+    entries: tuple[Entry, ...]
+
+    @property
+    def compared(self) -> list[Run]:
+        """The runs that have norms."""
+        return [entry.run for entry in self.entries if entry.norms and entry.day == self.days[-1]]
+
+    @property
+    def case(self) -> str:
+        """Name of the case."""
+        return self.entries[0].run.case
+
+
+def compare(directories: Sequence[AnyPath], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
+    """Compare the runs in `directories`; see `compare_runs`."""
+    return compare_runs([read_run(directory) for directory in directories], reference, days)
+
+
+def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
+    """Compare runs on `days`, by default on the last that all and the reference have.
+
+    `reference` is "auto", "exact", a reference file or a run directory: see
+    `postprocess.compare.solutions.choose_solution`. Raises `SetupError` where the runs are not of one case, one radius
+    and the same parameters, where a day is missing or where there is nothing to compare with.
+    """
+    for run in runs[1:]:
+        _require_same_radius(run, runs[0])
+        require_same_problem(run.directory, run.case, run.parameters, runs[0])
+    for run in runs:
+        for day in days:
+            run.require_snapshot(day)
+    candidates = list(days) if days else _common_days(runs)
+    solution = choose_solution(os.fspath(reference), runs, candidates, every=bool(days))
+    if isinstance(solution, RunSolution):
+        _require_same_radius(solution.run, runs[0])
+    chosen = tuple(sorted(set(days))) if days else (_last_known_day(solution, candidates),)
+    background = _background_depth(runs[0])
+    entries = [_entry(run, solution, day, background) for day in chosen for run in runs]
+    if not any(entry.norms for entry in entries):
+        raise SetupError(f"{runs[0].directory} is compared with nothing but itself; name another run or reference")
+    return Comparison(solution, chosen, tuple(entries))
+
+
+def fields_of(run: Run, day: float) -> Fields:
+    """Fields of a run as it wrote them."""
+    fields = run.snapshot(day).fields
+    velocity = fields["velocity_zonal"], fields["velocity_meridional"]
+    return Fields(fields["thickness"], velocity, fields["relative_vorticity"], fields["normal_velocity"])
+
+
+def fields_on(run: Run, solution: Solution, day: float) -> Fields:
+    """Fields of a solution at the cells, edges and vertices of the mesh of `run`.
+
+    Thickness is the mean over each cell where the run started from means, and the solution is not a run itself.
+    """
+    mesh = run.mesh
+    if isinstance(solution, RunSolution):
+        thickness, normal_velocity = solution.thickness(mesh.lon_cell, mesh.lat_cell, day), None
+    else:
+        thickness = sample_cells(mesh, partial(solution.thickness, day=day), run.sampling)
+        zonal, meridional = solution.velocity(mesh.lon_edge, mesh.lat_edge, day)
+        normal_velocity = np.cos(mesh.angle_edge) * zonal + np.sin(mesh.angle_edge) * meridional
+    return Fields(
+        thickness,
+        solution.velocity(mesh.lon_cell, mesh.lat_cell, day),
+        solution.vorticity(mesh.lon_vertex, mesh.lat_vertex, day),
+        normal_velocity,
+    )
+
+
+def is_reference(run: Run, solution: Solution) -> bool:
+    """Whether the solution is this very run."""
+    return isinstance(solution, RunSolution) and solution.run.directory.resolve() == run.directory.resolve()
+
+
+def _background_depth(run: Run) -> float:
+    """Depth that is no signal in the thickness of `run`; zero, with a warning, where its case is not found again."""
+    case = case_of(run)
+    if case is not None:
+        return case.background_depth
+    warnings.warn(
+        f"{run.case}, the case of {run.directory}, cannot be made again from its name and parameters, so that norms "
+        "of thickness are taken without subtracting a background depth; put its file back if it has one",
+        stacklevel=1,
+    )
+    return 0.0
+
+
+def _entry(run: Run, solution: Solution, day: float, background: float) -> Entry:
+    norms = {} if is_reference(run, solution) else _norms(run, solution, day, background)
+    return Entry(run, day, norms, _conservation(run, day))
+
+
+def _norms(run: Run, solution: Solution, day: float, background: float) -> dict[str, Norms]:
+    """Norms of the difference between `run` and `solution` by field, those of thickness less `background`."""
+    mesh = run.mesh
+    ours, theirs = fields_of(run, day), fields_on(run, solution, day)
+    norms = {
+        "thickness": scalar_norms(ours.thickness - background, theirs.thickness - background, mesh.area_cell),
+        "velocity": vector_norms(ours.velocity, theirs.velocity, mesh.area_cell),
+    }
+    if ours.normal_velocity is not None and theirs.normal_velocity is not None:
+        area_edge = mesh.dc_edge * mesh.dv_edge  # twice that of the quadrilateral round the edge
+        norms["normal_velocity"] = scalar_norms(ours.normal_velocity, theirs.normal_velocity, area_edge)
+    norms["vorticity"] = scalar_norms(ours.vorticity, theirs.vorticity, mesh.area_triangle)
+    return norms
+
+
+def _conservation(run: Run, day: float) -> dict[str, float]:
+    """The last diagnostics written until `day`."""
+    until = run.series["time"] <= (day + DAY_TOLERANCE) * SECONDS_PER_DAY
+    row = np.count_nonzero(until) - 1
+    return {name: float(run.series[name][row]) for name in SHOWN_DIAGNOSTICS}
+
+
+def _require_same_radius(run: Run, first: Run) -> None:
+    if not np.isclose(run.mesh.sphere_radius, first.mesh.sphere_radius, rtol=1e-12, atol=0.0):
+        raise SetupError(
+            f"{run.directory} is on a sphere of radius {run.mesh.sphere_radius:g} m, but {first.directory} on one of "
+            f"{first.mesh.sphere_radius:g} m; compare runs on one sphere"
+        )
+
+
+def _common_days(runs: Sequence[Run]) -> list[float]:
+    """Days after the start of which all runs have a snapshot."""
+    days = [float(day) for day in runs[0].days if day > 0.0]
+    for run in runs[1:]:
+        days = days_of_both(days, run.days)
+    if not days:
+        of_each = "; ".join(f"{run.directory}: {days_in_words(run.days)}" for run in runs)
+        raise SetupError(f"there is no day after the start of which all runs have a snapshot ({of_each}); run them on")
+    return days
+
+
+def _last_known_day(solution: Solution, days: Sequence[float]) -> float:
+    """The last of `days`, which ascend, that the solution has."""
+    if solution.days is None:
+        return days[-1]
+    known = days_of_both(sorted(solution.days), days)
+    if not known:
+        raise SetupError(
+            f"{solution.name} is known on day {days_in_words(solution.days)}, but the runs have snapshots of day "
+            f"{days_in_words(days)} in common; make a snapshot of one of the former"
+        )
+    return known[-1]
+
+
+def comparison_record(comparison: Comparison) -> dict[str, object]:
+    """The comparison as one JSON object; a norm that does not exist is null."""
+    return {
+        "case": comparison.case,
+        "reference": comparison.solution.name,
+        "uncertainty": {f"{day:g}": comparison.solution.uncertainty(day) for day in comparison.days},
+        "entries": [
+            {
+                "run": str(entry.run.directory),
+                "cells": entry.run.mesh.n_cells,
+                "day": entry.day,
+                "norms": {name: _finite(asdict(norms)) for name, norms in entry.norms.items()},
+                "conservation": entry.conservation,
+            }
+            for entry in comparison.entries
+        ],
+    }
+
+
+def _finite(values: dict[str, float]) -> dict[str, float | None]:
+    return {name: value if np.isfinite(value) else None for name, value in values.items()}

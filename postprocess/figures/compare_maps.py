@@ -1,0 +1,134 @@
+"""Maps of compared runs: each field of all runs, and their differences from the reference, on one equal-area view.
+
+Runs on different meshes are sampled at the same pixels of a Mollweide map with one colour scale. Differences are taken
+where the run has the field, as the norms do, and then sampled: interpolation blurs them slightly, but adds no error of
+its own to them.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from matplotlib.colors import CenteredNorm, Normalize
+from matplotlib.figure import Figure
+
+from mesh.arrays import Array
+from mesh.safe_files import AnyPath
+from postprocess.compare.comparison import Comparison, fields_of, fields_on
+from postprocess.compare.solutions import RunSolution, Solution
+from postprocess.figures.plots import CENTRAL_LONGITUDE, DOTS_PER_INCH, draw_mollweide_raster
+from postprocess.figures.projections import mollweide_raster
+from postprocess.runs.folders import prepared_folder
+
+ROWS, COLUMNS = 360, 720
+"""Pixels of the maps."""
+
+
+Scale = Literal["range", "from zero", "symmetric"]
+"""Of colours: from the least value to the greatest, from zero for lengths, from blue to red with white at zero."""
+
+
+@dataclass(frozen=True)
+class MapField:
+    """A field on maps: its title, its unit in SI units, and what the colour bars of it and of its difference show."""
+
+    title: str
+    unit: float
+    label: str
+    scale: Scale
+    difference_label: str
+    difference_scale: Scale
+
+
+FIELDS = {
+    "thickness": MapField("Thickness", 1.0, "thickness (m)", "range", "difference in thickness (m)", "symmetric"),
+    "velocity": MapField(
+        "Velocity", 1.0, "speed (m s⁻¹)", "from zero", "length of the difference in velocity (m s⁻¹)", "from zero"
+    ),
+    "vorticity": MapField(
+        "Relative vorticity",
+        1e-5,
+        "relative vorticity (10⁻⁵ s⁻¹)",
+        "symmetric",
+        "difference in relative vorticity (10⁻⁵ s⁻¹)",
+        "symmetric",
+    ),
+}
+
+Values = dict[str, Array]
+"""Values (ROWS * COLUMNS,) of each field."""
+
+
+def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
+    """Write maps of all fields and differences on the last day that was compared to `folder`; return their paths."""
+    folder = prepared_folder(folder)
+    day = comparison.days[-1]
+    longitude, latitude = mollweide_raster(ROWS, COLUMNS)
+    longitude = longitude + CENTRAL_LONGITUDE
+    reference, compared = comparison.solution, [RunSolution(run) for run in comparison.compared]
+    values = [_values(solution, longitude, latitude, day) for solution in (reference, *compared)]
+    differences = [_differences(solution, reference, longitude, latitude, day) for solution in compared]
+    names = [solution.name for solution in (reference, *compared)]
+    paths = []
+    for name, field in FIELDS.items():
+        heading = f"{field.title}: {comparison.case}, day {day:g}"
+        panels = [each[name] / field.unit for each in values]
+        figure = map_figure(panels, names, heading, field.label, field.scale)
+        paths.append(_save(figure, folder, f"compare_{name}_day{day:g}"))
+        panels = [each[name] / field.unit for each in differences]
+        heading += f"\ndifference from the reference, {reference.name}"
+        figure = map_figure(panels, names[1:], heading, field.difference_label, field.difference_scale)
+        paths.append(_save(figure, folder, f"compare_{name}_difference_day{day:g}"))
+    return paths
+
+
+def _save(figure: Figure, folder: Path, name: str) -> Path:
+    path = folder / f"{name}.png"
+    figure.savefig(path, dpi=DOTS_PER_INCH)
+    return path
+
+
+def _values(solution: Solution, longitude: Array, latitude: Array, day: float) -> Values:
+    return {
+        "thickness": solution.thickness(longitude, latitude, day),
+        "velocity": np.hypot(*solution.velocity(longitude, latitude, day)),
+        "vorticity": solution.vorticity(longitude, latitude, day),
+    }
+
+
+def _differences(ours: RunSolution, solution: Solution, longitude: Array, latitude: Array, day: float) -> Values:
+    """Differences of a run from a solution at the cells and vertices of the run, sampled at points."""
+    run, reference = fields_of(ours.run, day), fields_on(ours.run, solution, day)
+    zonal, meridional = (mine - its for mine, its in zip(run.velocity, reference.velocity, strict=True))
+    from_cells, from_vertices = ours.from_cells(longitude, latitude), ours.from_vertices(longitude, latitude)
+    return {
+        "thickness": from_cells.scalar(run.thickness - reference.thickness),
+        "velocity": np.hypot(*from_cells.vector(zonal, meridional)),
+        "vorticity": from_vertices.scalar(run.vorticity - reference.vorticity),
+    }
+
+
+def map_figure(panels: list[Array], titles: list[str], heading: str, label: str, scale: Scale) -> Figure:
+    """One map for each of `panels` with one colour scale; up to two maps beside each other."""
+    columns = min(len(panels), 2)
+    rows = -(-len(panels) // columns)
+    figure = Figure(figsize=(6.6 * columns, 3.5 * rows + 1.0), layout="constrained")
+    grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
+    options = _colours(panels, scale)
+    for axes, title, values in zip(grid, titles, panels, strict=False):
+        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), options)
+        axes.set_title(title, fontsize=9)
+    for axes in grid[len(panels) :]:
+        axes.axis("off")
+    figure.colorbar(drawn, ax=list(grid), location="bottom", shrink=0.7, aspect=40, label=label)
+    figure.suptitle(heading, fontsize=11)
+    return figure
+
+
+def _colours(panels: list[Array], scale: Scale) -> dict:
+    """Colours of all `panels`."""
+    lowest, highest = min(values.min() for values in panels), max(values.max() for values in panels)
+    if scale == "symmetric":
+        return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=max(-lowest, highest) or 1.0)}
+    return {"cmap": "viridis", "norm": Normalize(0.0 if scale == "from zero" else lowest, highest)}

@@ -1,0 +1,154 @@
+"""Voronoi cells as polygons on flat maps: the equal-area Mollweide view of the globe and orthographic views.
+
+Maps have the sphere's radius as their unit: the Mollweide ellipse has half axes 2 sqrt(2) and sqrt(2), the
+orthographic disc radius 1.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array, Index
+from mesh.geometry.sphere import dot, from_lonlat, normalize, to_lonlat
+from mesh.voronoi_mesh import VoronoiMesh
+
+NEWTON_ITERATIONS = 12
+POINTS_ON_LONG_SIDE = 16
+LONG_SIDE = np.radians(15.0)
+"""Sides that span more longitude than this are drawn as curves of several points: they lie near a pole."""
+
+
+ON_THE_POLE = 1e-9
+"""Sides closer to a pole than this (radians) run through it."""
+
+
+@dataclass(frozen=True)
+class Polygons:
+    """Outlines on a map, each (n_points, 2), and the cell that each shows; a cell on a seam is shown twice."""
+
+    outlines: list[Array]
+    cells: Index
+
+
+def mollweide(longitude: Array, latitude: Array) -> Array:
+    """Map coordinates (..., 2) of longitude from the central meridian, which may pass +-pi, and latitude (rad)."""
+    # Newton's method on 2 t + sin 2t = pi sin(latitude), whose derivative vanishes at the poles only.
+    angle = np.array(latitude, dtype=float)
+    for _ in range(NEWTON_ITERATIONS):
+        slope = np.maximum(2.0 + 2.0 * np.cos(2.0 * angle), 1e-12)
+        angle = angle - (2.0 * angle + np.sin(2.0 * angle) - np.pi * np.sin(latitude)) / slope
+        angle = np.clip(angle, -0.5 * np.pi, 0.5 * np.pi)
+    x = 2.0 * np.sqrt(2.0) / np.pi * longitude * np.cos(angle)
+    return np.stack([x, np.sqrt(2.0) * np.sin(angle)], axis=-1)
+
+
+def mollweide_raster(rows: int, columns: int) -> tuple[Array, Array]:
+    """Longitudes from the central meridian and latitudes (rows * columns,) of the pixels of the map, from the south.
+
+    The rectangle holds the map's ellipse; pixels beyond the rim have the longitude of the rim.
+    """
+    x = 2.0 * np.sqrt(2.0) * ((2.0 * np.arange(columns) + 1.0) / columns - 1.0)
+    sine = (2.0 * np.arange(rows) + 1.0) / rows - 1.0
+    angle = np.arcsin(sine)[:, None]
+    latitude = np.arcsin((2.0 * angle + np.sin(2.0 * angle)) / np.pi)
+    longitude = np.clip(np.pi * x / (2.0 * np.sqrt(2.0) * np.cos(angle)), -np.pi, np.pi)
+    return longitude.ravel(), np.repeat(latitude, columns)
+
+
+def orthographic(points: Array, longitude: float, latitude: float) -> Array:
+    """Coordinates (..., 3) right, up and towards the viewer above `longitude`, `latitude` (rad)."""
+    right = np.array([-np.sin(longitude), np.cos(longitude), 0.0])
+    towards = from_lonlat(np.array(longitude), np.array(latitude))
+    return points @ np.stack([right, np.cross(towards, right), towards], axis=1)
+
+
+def cell_corners(mesh: VoronoiMesh) -> Array:
+    """Vertices (n_cells, max_edges, 3) of every cell on the unit sphere, the last repeated to fill."""
+    columns = np.minimum(np.arange(mesh.max_edges), mesh.n_edges_on_cell[:, None] - 1)
+    rings = np.take_along_axis(mesh.vertices_on_cell, columns, axis=1)
+    return normalize(mesh.vertex_points)[rings]
+
+
+def mollweide_polygons(mesh: VoronoiMesh, central_longitude: float) -> Polygons:
+    """All cells on the Mollweide map; what passes the map's rim is to be clipped there."""
+    corners = cell_corners(mesh)
+    center = _from_meridian(mesh.lon_cell, central_longitude)
+    longitude, latitude = to_lonlat(corners)
+    longitude = center[:, None] + _wrapped(longitude - mesh.lon_cell[:, None])
+    steps = np.abs(np.diff(longitude, axis=1, append=longitude[:, :1]))
+    near_pole = (steps.max(axis=1) > LONG_SIDE) | (np.abs(latitude).max(axis=1) > 0.5 * np.pi - ON_THE_POLE)
+    outlines = mollweide(longitude, latitude)
+    shift = np.where(longitude.max(axis=1) > np.pi, -2.0 * np.pi, 2.0 * np.pi)
+    on_seam = (np.abs(longitude).max(axis=1) > np.pi) & ~near_pole
+    copies = mollweide(longitude[on_seam] + shift[on_seam, None], latitude[on_seam])
+    polar_outlines, polar_cells = [], []
+    for cell in np.flatnonzero(near_pole):
+        ring = corners[cell, : mesh.n_edges_on_cell[cell]]
+        for outline in _outlines_near_pole(ring, float(mesh.lon_cell[cell]), float(center[cell])):
+            polar_outlines.append(outline)
+            polar_cells.append(cell)
+    return Polygons(
+        [*outlines[~near_pole], *copies, *polar_outlines],
+        np.concatenate([np.flatnonzero(~near_pole), np.flatnonzero(on_seam), np.array(polar_cells, dtype=int)]),
+    )
+
+
+def orthographic_polygons(mesh: VoronoiMesh, longitude: float, latitude: float) -> Polygons:
+    """The cells on the hemisphere that faces the viewer, drawn up to the limb."""
+    corners = orthographic(cell_corners(mesh), longitude, latitude)
+    visible = corners[..., 2].max(axis=1) > 0.0
+    flat, depth = corners[visible, :, :2], corners[visible, :, 2]
+    at_limb = flat / np.linalg.norm(flat, axis=-1, keepdims=True)
+    return Polygons(list(np.where(depth[..., None] > 0.0, flat, at_limb)), np.flatnonzero(visible))
+
+
+def _wrapped(angle: Array) -> Array:
+    """Angle in [-pi, pi)."""
+    return (angle + np.pi) % (2.0 * np.pi) - np.pi
+
+
+def _from_meridian(longitude: Array, central_longitude: float) -> Array:
+    return _wrapped(longitude - central_longitude)
+
+
+def _outlines_near_pole(corners: Array, cell_longitude: float, center: float) -> list[Array]:
+    """Outlines on the map of one cell at or near a pole, its long sides as curves.
+
+    `center` is the longitude of the cell from the map's central meridian.
+    """
+    points = np.concatenate(
+        [_side(start, end) for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
+    )
+    longitude, latitude = to_lonlat(points)
+    longitude = center + _wrapped(longitude - cell_longitude)
+    turns = (-2.0 * np.pi, 0.0, 2.0 * np.pi)
+    if not _surrounds_pole(corners):
+        return [mollweide(longitude + turn, latitude) for turn in turns]
+    # The cell is all that lies poleward of its sides: a strip across the map, closed beyond the rim.
+    order = np.argsort(longitude)
+    strip = mollweide(np.concatenate([longitude[order] + turn for turn in turns]), np.tile(latitude[order], 3))
+    top = np.copysign(np.sqrt(2.0), latitude[0])
+    return [np.concatenate([strip, [[strip[-1, 0], top], [strip[0, 0], top]]])]
+
+
+def _side(start: Array, end: Array) -> Array:
+    """Points (n, 3) of a side without its end: the start alone, or a great-circle arc where the side is long."""
+    normal = np.cross(start, end)
+    if abs(normal[2]) < ON_THE_POLE * np.linalg.norm(normal):
+        # The side runs through the pole, towards which meridians curve ever more on the map.
+        to_pole, beyond = (np.hypot(corner[0], corner[1]) for corner in (start, end))
+        pole = to_pole / (to_pole + beyond)
+        way = np.linspace(-1.0, 1.0, 4 * POINTS_ON_LONG_SIDE + 1)[:-1]
+        fraction = pole + np.where(way < 0.0, -pole, 1.0 - pole) * way**2
+    elif abs(_wrapped(np.subtract(*to_lonlat(np.stack([start, end]))[0]))) > LONG_SIDE:
+        fraction = np.linspace(0.0, 1.0, POINTS_ON_LONG_SIDE, endpoint=False)
+    else:
+        return start[None, :]
+    return normalize((1.0 - fraction)[:, None] * start + fraction[:, None] * end)
+
+
+def _surrounds_pole(corners: Array) -> bool:
+    """Whether a pole lies strictly inside a counter-clockwise cell."""
+    pole = np.array([0.0, 0.0, np.copysign(1.0, corners[:, 2].mean())])
+    sides = dot(np.cross(corners, np.roll(corners, -1, axis=0)), np.broadcast_to(pole, corners.shape))
+    return bool(np.all(sides > ON_THE_POLE * np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)))

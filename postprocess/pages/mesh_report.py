@@ -1,0 +1,241 @@
+"""A page on mesh generation: Table 1 made anew, variable-resolution meshes over several starts, optimisers compared."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from mesh.density.named import NAMED
+from mesh.discrete.quality import Quality, mesh_quality
+from mesh.generation.optimizer import History, Limits, ScvtResult
+from mesh.generation.pipeline import mesh_of
+from mesh.generation.scvt import Request, generate_scvt, optimize, starting_mesh
+from mesh.geometry.sphere import mean_spacing, normalize
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.figures.plots import draw_mollweide, draw_orthographic
+from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures
+
+PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)
+"""Ju, Ringler and Gunzburger (2011): mu, sigma_avg, sigma_min, q_avg, q_min of the mesh of equation (12)."""
+
+MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
+LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
+PAGE_DOTS_PER_INCH = 80
+CIRCLE_CELLS = 2562
+OPTIMIZER_CELLS = 2562
+RANDOM_CELLS = 10242
+RANDOM_SEEDS = range(5)
+SHAKEN_SEEDS = range(3)
+SHAKE = 0.2
+"""Size of random displacements of a converged icosahedral mesh, in mean spacings."""
+
+STARTS = [("icosahedral", 0), ("fibonacci", 0)] + [
+    (start, seed) for start in ("random", "random-root") for seed in range(3)
+]
+OPTIMIZER_LIMITS = {
+    "lbfgs": Limits(1e-8),
+    "multilevel": Limits(1e-8),
+    "lloyd": Limits(1e-8, 3000),
+    "probabilistic": Limits(1e-8, 60),
+    "macqueen": Limits(1e-8, 60),
+}
+"""How far each optimiser goes in the comparison; the last three would need too long to get there."""
+
+ROUND_OFF = 1e-13
+
+Tell = Callable[[str], None]
+"""Called with a line on what has been done."""
+
+
+@dataclass(frozen=True)
+class Start:
+    """One converged mesh of a family, and the start that it came from."""
+
+    start: str
+    seed: int
+    mesh: VoronoiMesh
+    quality: Quality
+    history: History
+
+    @property
+    def dislocations(self) -> int:
+        """Pairs of a pentagon and a heptagon, beyond the twelve pentagons that no mesh can do without."""
+        return int(np.count_nonzero(self.mesh.n_edges_on_cell == 5)) - 12
+
+
+def converge_from(request: Request, tolerance: float) -> Start:
+    """Converge one mesh and measure it."""
+    result = generate_scvt(request, Limits(tolerance))
+    return measured(request.start or "icosahedral", request, result)
+
+
+def measured(start: str, request: Request, result: ScvtResult) -> Start:
+    """The mesh of a result with its quality."""
+    mesh = mesh_of(result, request.density)
+    return Start(start, request.seed, mesh, mesh_quality(mesh), result.history)
+
+
+def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
+    """Refined-circle meshes from all `STARTS`."""
+    meshes = []
+    for start, seed in STARTS:
+        request = Request(CIRCLE_CELLS, start, density=NAMED["refined-circle"], seed=seed)
+        meshes.append(converge_from(request, tolerance))
+        tell(f"refined-circle from {start} {seed}: {meshes[-1].history.iterations} iterations")
+    return meshes
+
+
+def random_meshes(tolerance: float, tell: Tell) -> list[Start]:
+    """Uniform meshes: the icosahedral one, those from it after a shake, and those from random points."""
+    meshes = [converge_from(Request(RANDOM_CELLS), tolerance)]
+    for seed in SHAKEN_SEEDS:
+        meshes.append(_shaken(meshes[0], seed, tolerance))
+    for seed in RANDOM_SEEDS:
+        meshes.append(converge_from(Request(RANDOM_CELLS, "random", seed=seed), tolerance))
+    for mesh in meshes:
+        tell(f"{RANDOM_CELLS} cells, {mesh.start} {mesh.seed}: {mesh.dislocations} dislocations")
+    return meshes
+
+
+def _shaken(start: Start, seed: int, tolerance: float) -> Start:
+    """Displace all generators of a converged mesh at random and converge it again."""
+    points = start.mesh.cell_points
+    step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
+    request = Request(len(points), seed=seed)
+    result = optimize(normalize(points + step), limits=Limits(tolerance))
+    return measured("icosahedral, shaken", request, result)
+
+
+def optimizer_histories(tell: Tell) -> dict[str, History]:
+    """Histories of all optimisers from the same random points.
+
+    The multilevel method has its own start; its history is that of its finest level.
+    """
+    histories = {}
+    for method, limits in OPTIMIZER_LIMITS.items():
+        request = Request(OPTIMIZER_CELLS, None if method == "multilevel" else "random", method)
+        if method == "multilevel":
+            histories[method] = generate_scvt(request, limits).history
+        else:
+            histories[method] = optimize(*starting_mesh(request), method, limits=limits).history
+        tell(f"{method}: residual {histories[method].residual[-1]:.1e} after {histories[method].iterations} iterations")
+    return histories
+
+
+def optimizer_figure(histories: dict[str, History]) -> Figure:
+    """Residual, and energy above the lowest that any reached, against iteration and time."""
+    figure = Figure(figsize=(11.0, 7.0), layout="constrained")
+    panels = figure.subplots(2, 2, sharex="col", sharey="row")
+    for method, history in histories.items():
+        above = np.array(history.energy) / min(history.energy) - 1.0
+        above[above <= ROUND_OFF] = np.nan
+        iterations, seconds = np.arange(len(above)) + 1, np.maximum(history.seconds, 1e-3)
+        for column, x in enumerate((iterations, seconds)):
+            panels[0, column].loglog(x, history.residual, label=method)
+            panels[1, column].loglog(x, above, label=method)
+    panels[0, 0].set_ylabel("residual (mean spacings)")
+    panels[1, 0].set_ylabel("energy over its own minimum, less one")
+    panels[1, 0].set_xlabel("iteration, counted from 1")
+    panels[1, 1].set_xlabel("time (s)")
+    panels[0, 1].legend()
+    for axes in panels.flat:
+        axes.grid(alpha=0.3)
+    figure.suptitle(f"Optimisers from random points (multilevel: icosahedral), {OPTIMIZER_CELLS} cells")
+    return figure
+
+
+def distribution_figure(meshes: list[Start], published: tuple[float, ...], title: str) -> Figure:
+    """Each measure over the starts as points, with the published value as a line."""
+    figure = Figure(figsize=(11.0, 3.6), layout="constrained")
+    kinds = sorted({mesh.start for mesh in meshes})
+    for axes, name, label, value in zip(figure.subplots(1, 5), MEASURES, LABELS, published, strict=True):
+        for position, kind in enumerate(kinds):
+            values = [getattr(mesh.quality, name) for mesh in meshes if mesh.start == kind]
+            axes.plot([position] * len(values), values, "o", alpha=0.7)
+        axes.axhline(value, color="black", linewidth=0.8, linestyle="--")
+        axes.set_xticks(range(len(kinds)), kinds, rotation=60, fontsize=7)
+        axes.set_xlim(-0.5, len(kinds) - 0.5)
+        axes.set_title(label)
+    figure.suptitle(f"{title} (dashed: published)", fontsize=10)
+    return figure
+
+
+def meshes_figure(meshes: dict[str, VoronoiMesh]) -> Figure:
+    """Each mesh coloured by the width of its cells, on the globe and seen from outside."""
+    figure = Figure(figsize=(11.0, 3.6 * len(meshes)), layout="constrained")
+    panels = figure.subplots(len(meshes), 2, width_ratios=[2.0, 1.0], squeeze=False)
+    for (wide, round_), (title, mesh) in zip(panels, meshes.items(), strict=True):
+        width = np.degrees(np.sqrt(mesh.area_cell))
+        draw_mollweide(wide, mesh, width, {"cmap": "viridis"})
+        drawn = draw_orthographic(round_, mesh, width, {"cmap": "viridis"})
+        drawn.set(edgecolor="white", linewidth=0.2)
+        figure.colorbar(drawn, ax=[wide, round_], label="root of cell area (degrees)", shrink=0.8)
+        wide.set_title(title)
+    return figure
+
+
+def sizes_figure(meshes: dict[str, VoronoiMesh]) -> Figure:
+    """Mean neighbour distance and area of each cell against its rank, as in the paper's figures against cell number."""
+    figure = Figure(figsize=(11.0, 4.0), layout="constrained")
+    left, right = figure.subplots(1, 2)
+    for title, mesh in meshes.items():
+        inside = mesh.on_ring
+        distances = np.where(inside, mesh.dc_edge[np.where(inside, mesh.edges_on_cell, 0)], 0.0)
+        size = np.degrees(distances.sum(axis=1) / mesh.n_edges_on_cell)
+        rank = np.arange(mesh.n_cells) / mesh.n_cells
+        left.plot(rank, np.sort(size), label=title)
+        right.plot(rank, np.sort(mesh.area_cell) * mesh.n_cells / (4.0 * np.pi), label=title)
+    left.set_ylabel("mean distance to the neighbours (degrees)")
+    right.set_ylabel("area over the mean area")
+    for axes in (left, right):
+        axes.set_xlabel("cell number, by size, over number of cells")
+        axes.grid(alpha=0.3)
+    left.legend(fontsize=8)
+    return figure
+
+
+def table1_lines(rows: list[Row]) -> list[str]:
+    """Table 1 in Markdown: for each level ours above the published values."""
+    lines = [
+        "| level | cells | | bisection: "
+        + ", ".join(LABELS)
+        + " | SCVT: "
+        + ", ".join(LABELS)
+        + " | residual | iterations | s |",
+        "|---|---|---|---|---|---|---|---|",
+    ]
+    for row in rows:
+        ours, theirs = (
+            " | ".join(" ".join(f"{value:.4f}" for value in values) for values in pair)
+            for pair in (
+                (measures(row.bisection), measures(row.scvt)),
+                (PUBLISHED_BISECTION[row.level], PUBLISHED_SCVT[row.level]),
+            )
+        )
+        tail = f"{row.scvt.residual:.1e} | {row.iterations} | {row.seconds:.1f}"
+        lines.append(f"| {row.level} | {row.scvt.cells} | ours | {ours} | {tail} |")
+        lines.append(f"| | | published | {theirs} | | | |")
+    return lines
+
+
+def starts_lines(meshes: list[Start]) -> list[str]:
+    """Meshes over starts in Markdown."""
+    lines = [
+        "| start | seed | " + " | ".join(LABELS) + " | obtuse | residual | iterations | energy | dislocations |",
+        "|---|---|" + "---|" * (len(LABELS) + 5),
+    ]
+    for mesh in meshes:
+        values = " | ".join(f"{getattr(mesh.quality, name):.4f}" for name in MEASURES)
+        lines.append(
+            f"| {mesh.start} | {mesh.seed} | {values} | {mesh.quality.obtuse} | {mesh.quality.residual:.1e} | "
+            f"{mesh.history.iterations} | {mesh.history.energy[-1]:.6e} | {mesh.dislocations} |"
+        )
+    return lines
+
+
+def save(figure: Figure, folder: Path, name: str) -> str:
+    """Write a figure and give the Markdown that shows it."""
+    figure.savefig(folder / f"{name}.png", dpi=PAGE_DOTS_PER_INCH)
+    return f"![{name.replace('-', ' ')}]({name}.png)"

@@ -1,0 +1,1 @@
+"""Reference solutions: the spectral model, and what is stored of it."""

@@ -1,0 +1,145 @@
+"""Read what a run left in its directory."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.errors import MeshError
+from mesh.safe_files import AnyPath, dataset
+from mesh.files.io import read_mesh
+from mesh.integrals.quadrature import Sampling
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import SetupError
+from swe.output.files import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, load_record, read_series
+
+DAY_TOLERANCE = 1e-6
+"""Snapshots less than this apart, in days, are of the same day."""
+
+DAYS_TOLD = 8
+"""Errors name all days of a run up to this number of them."""
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """Fields by name at one day since the start."""
+
+    day: float
+    fields: dict[str, Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run directory: its mesh in metres, its case, the days of its snapshots and its diagnostics by name.
+
+    `case` is the name of the case and `parameters` are what it was run with; `sampling` says what the initial thickness
+    was, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` their number.
+    """
+
+    directory: Path
+    mesh: VoronoiMesh
+    case: str
+    parameters: dict[str, float]
+    sampling: Sampling
+    time_step: float
+    steps: int
+    days: Array
+    series: dict[str, Array]
+
+    def snapshot(self, day: float) -> Snapshot:
+        """The snapshot of `day`; raise `SetupError` where there is none."""
+        self.require_snapshot(day)
+        return self._read(int(np.argmin(np.abs(self.days - day))))
+
+    def require_snapshot(self, day: float) -> None:
+        """Raise `SetupError` where there is no snapshot of `day`."""
+        if not days_of_both([day], self.days):
+            raise SetupError(
+                f"{self.directory} has no snapshot of day {day:g}; its days are {days_in_words(self.days)}"
+            )
+
+    def last_snapshot(self) -> Snapshot:
+        """The last snapshot in the history file."""
+        return self._read(len(self.days) - 1)
+
+    def _read(self, row: int) -> Snapshot:
+        with dataset(self.directory / HISTORY_FILE) as file:
+            file.set_auto_mask(False)
+            snapshot = Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
+        wrong = [name for name, values in snapshot.fields.items() if not np.isfinite(values).all()]
+        if wrong or not snapshot.fields["thickness"].min(initial=np.inf) > 0.0:
+            raise SetupError(
+                f"{self.directory / HISTORY_FILE} has no sound {wrong[0] if wrong else 'thickness'} on day "
+                f"{snapshot.day:g}; it is damaged, run it again"
+            )
+        return snapshot
+
+
+def read_run(directory: AnyPath) -> Run:
+    """Open a run directory; raise `SetupError` where it holds no run, `MeshError` where its mesh is not valid."""
+    directory = Path(directory)
+    try:
+        record = load_record(directory)
+        series = read_series(directory / DIAGNOSTICS_FILE)
+        with dataset(directory / HISTORY_FILE) as file:
+            days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
+        mesh = read_mesh(directory / MESH_FILE)
+        configuration = record["configuration"]
+        if configuration["sampling"] not in get_args(Sampling):
+            raise ValueError(f"its sampling is {configuration['sampling']!r}")
+        run = Run(
+            directory,
+            mesh,
+            case=str(record["case"]),
+            parameters=dict(record["parameters"].items()),
+            sampling=configuration["sampling"],
+            time_step=float(configuration["time_step"]),
+            steps=int(record["steps"]),
+            days=days,
+            series=series,
+        )
+        _require_rows(run)
+        _require_sizes(run.last_snapshot(), run)
+        return run
+    except (MeshError, SetupError):
+        raise
+    except (OSError, RuntimeError, ValueError, AttributeError, LookupError, TypeError, ArithmeticError) as error:
+        raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+
+
+def _require_rows(run: Run) -> None:
+    """Raise `SetupError` where the files have no rows, or not those of ascending times that a run writes."""
+    for name, times in ((HISTORY_FILE, run.days), (DIAGNOSTICS_FILE, run.series["time"])):
+        if not len(times):
+            raise SetupError(f"{run.directory / name} has no rows; the run was killed at its start, run it again")
+        if not np.all(np.diff(times, prepend=-1.0) > 0.0):
+            raise SetupError(f"{run.directory / name} has times that do not ascend; it is damaged, run it again")
+
+
+def _require_sizes(snapshot: Snapshot, run: Run) -> None:
+    """Raise `SetupError` where the fields of `snapshot` are not on the mesh of `run`."""
+    places = {"nCells": run.mesh.n_cells, "nEdges": run.mesh.n_edges, "nVertices": run.mesh.n_vertices}
+    for name, (place, *_) in FIELDS.items():
+        if snapshot.fields[name].shape != (places[place],):
+            raise SetupError(
+                f"{run.directory / HISTORY_FILE} has {snapshot.fields[name].size} values of {name}, but "
+                f"{MESH_FILE} beside it needs {places[place]}; put the files of one run together"
+            )
+
+
+def days_in_words(days: Iterable[float]) -> str:
+    """Days as a part of a sentence, the ones between the first and the last left out where there are many."""
+    shown = [f"{day:g}" for day in days]
+    if len(shown) > DAYS_TOLD:
+        shown = [*shown[:3], "...", shown[-1]]
+    return ", ".join(shown)
+
+
+def days_of_both(days: Iterable[float], others: Iterable[float]) -> list[float]:
+    """Those of `days` that are among `others`, up to round-off."""
+    known = np.array(list(others))
+    return [day for day in days if np.any(np.abs(known - day) < DAY_TOLERANCE)]

@@ -1,0 +1,177 @@
+"""The same case over families and sizes of meshes: their quality beside truncation and solution errors.
+
+A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh and one run for each family and size, and
+`study.csv` one row for each. What is there and fits is not made again, so a study that was interrupted goes on.
+"""
+
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numpy as np
+
+from cases.base import Case
+from mesh.arrays import Array
+from mesh.discrete.quality import mesh_quality
+from mesh.files.io import read_mesh, write_mesh
+from mesh.generation.generators import icosahedral_level
+from mesh.geometry.sphere import mean_spacing
+from mesh.safe_files import dataset
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.compare.comparison import Comparison, compare_runs, fields_of, fields_on
+from postprocess.compare.truncation import truncation_errors
+from postprocess.runs.folders import prepared_folder
+from postprocess.runs.reading import Run
+from postprocess.studies.families import FAMILIES
+from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, require_days, write_table
+from swe.errors import SetupError
+
+LEAST_CELLS, LARGEST_CELLS = 162, 655362
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
+
+    Raises `SetupError` where a family is unknown or a number of cells is none of the bisected icosahedron.
+    """
+
+    folder: Path
+    case: Case
+    days: float
+    error_day: float
+    families: tuple[str, ...]
+    cells: tuple[int, ...]
+
+    def __post_init__(self) -> None:
+        for family in self.families:
+            if family not in FAMILIES:
+                raise SetupError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
+        for cells in self.cells:
+            if icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
+                raise SetupError(
+                    f"{cells} cells are no bisected icosahedron of a fit size; choose among {LEAST_CELLS}, 642, 2562, "
+                    f"... up to {LARGEST_CELLS}"
+                )
+        require_days(self.days)
+        if not 0.0 < self.error_day <= self.days:
+            raise SetupError(
+                f"errors are to be taken on day {self.error_day:g}, which is not within the {self.days:g} days of the "
+                "run; choose a day that is"
+            )
+
+
+@dataclass(frozen=True)
+class Member:
+    """One mesh of a study, its run, None where that failed, and its comparison, None where there is no solution."""
+
+    family: str
+    requested_cells: int
+    mesh: VoronoiMesh
+    run: Run | None
+    comparison: Comparison | None
+    failure: str
+
+    @property
+    def spacing(self) -> float:
+        """Mean distance between neighbours, km."""
+        return mean_spacing(self.mesh.n_cells) * self.mesh.sphere_radius / 1e3
+
+
+def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[Row]]:
+    """Make what is missing of a study, coarse meshes first, and write its table; return finest members and all rows."""
+    prepared_folder(plan.folder)
+    finest: list[Member] = []
+    rows: list[Row] = []
+    for cells in sorted(set(plan.cells)):
+        finest = []  # those of coarser meshes are let go, they would fill the memory
+        for family in dict.fromkeys(plan.families):
+            finest.append(_member(plan, family, cells, progress, tell))
+            rows.append(row_of(finest[-1], plan.error_day))
+            write_table(rows, plan.folder / TABLE_FILE)
+    return finest, rows
+
+
+def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Member:
+    """Read or make one mesh and its run."""
+    name = f"{family}-{cells}"
+    mesh = _mesh(plan.folder / "meshes" / f"{name}.nc", family, cells, tell)
+    task = Task(plan.folder / "runs" / name, plan.case, mesh, plan.days, plan.error_day)
+    run, failure = task.carry_out(progress, tell)
+    comparison = None if run is None else _comparison(run, plan.error_day, tell)
+    return Member(family, cells, mesh.scaled(plan.case.radius) if run is None else run.mesh, run, comparison, failure)
+
+
+def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
+    """The run beside the solution of its case; None where that is not known, for a reason that is told."""
+    try:
+        return compare_runs([run], days=[day])
+    except SetupError as error:
+        tell(f"no errors: {error}")
+        return None
+
+
+def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
+    """Read a mesh, or make it where it is missing or was made otherwise."""
+    origin = f"mesh of a study: {FAMILIES[family].description}; {cells} cells asked for"
+    if not (path.exists() and _history(path).endswith(origin)):
+        tell(f"{path.stem}: making the mesh")
+        path.parent.mkdir(exist_ok=True)
+        write_mesh(FAMILIES[family].make(cells), path, origin)
+    return read_mesh(path)
+
+
+def _history(path: Path) -> str:
+    """What a mesh file says of how it was made; nothing where it is not readable."""
+    try:
+        with dataset(path) as file:
+            return str(file.history)
+    except (OSError, AttributeError):
+        return ""
+
+
+def row_of(member: Member, error_day: float) -> Row:
+    """The line of a member: the mesh, its quality, truncation errors, solution errors and conservation."""
+    row: Row = {
+        "family": member.family,
+        "requested_cells": member.requested_cells,
+        "spacing_km": member.spacing,
+        **asdict(mesh_quality(member.mesh)),
+    }
+    for operator, norms in asdict(truncation_errors(member.mesh)).items():
+        row |= {f"truncation_{operator}_{name}": norms[name] for name in ("l2", "linf")}
+    row["failure"] = member.failure
+    if member.comparison is not None:
+        row |= _errors(member, member.comparison, error_day)
+    if member.run is not None:
+        row |= {name: float(np.abs(member.run.series[name]).max()) for name in CONSERVATION}
+        row |= {"time_step_s": member.run.time_step, "steps": member.run.steps}
+    return row
+
+
+def thickness_error(member: Member, day: float) -> Array:
+    """Thickness of a run less that of the solution it is compared with (n_cells,), m."""
+    assert member.run is not None
+    assert member.comparison is not None
+    ours, theirs = fields_of(member.run, day), fields_on(member.run, member.comparison.solution, day)
+    return ours.thickness - theirs.thickness
+
+
+def _errors(member: Member, comparison: Comparison, day: float) -> Row:
+    row: Row = {"reference": comparison.solution.name, "error_day": day}
+    for field, norms in comparison.entries[0].norms.items():
+        row |= {f"{field}_{name}": value for name, value in asdict(norms).items()}
+    row |= {f"uncertainty_{field}": value for field, value in comparison.solution.uncertainty(day).items()}
+    return row | _worst_cell(member, day)
+
+
+def _worst_cell(member: Member, day: float) -> Row:
+    """Where the error of thickness is largest, degrees, and how many mean distances away the mesh is irregular."""
+    mesh = member.mesh
+    worst = int(np.argmax(np.abs(thickness_error(member, day))))
+    irregular = mesh.cell_points[mesh.n_edges_on_cell != 6]
+    nearest = float(np.linalg.norm(irregular - mesh.cell_points[worst], axis=1).min())
+    return {
+        "worst_longitude": float(np.degrees(mesh.lon_cell[worst])),
+        "worst_latitude": float(np.degrees(mesh.lat_cell[worst])),
+        "worst_to_irregular": nearest / (1e3 * member.spacing),
+    }

@@ -1,0 +1,135 @@
+"""What studies share: runs that are not run again, tables as CSV, fitted orders."""
+
+import csv
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from cases.base import Case
+from mesh.errors import MeshError
+from mesh.files.io import mesh_hash
+from mesh.plain import recorded
+from mesh.safe_files import written_aside
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.runs.reading import Run, read_run
+from swe.constants import SECONDS_PER_DAY
+from swe.errors import RunError, SetupError
+from swe.output.files import load_record
+from swe.run.simulation import Simulation
+
+TABLE_FILE = "study.csv"
+CONSERVATION = (
+    "mass_change",
+    "absolute_vorticity_change",
+    "total_energy_change_of_total",
+    "potential_enstrophy_change",
+)
+"""Series of diagnostics that are in the tables."""
+
+Tell = Callable[[str], None]
+"""Hears a line on what has been done."""
+
+Row = dict[str, Any]
+"""One line of a table by column: numbers and words."""
+
+
+MOST_DAYS = 1e5
+
+
+def require_days(days: float) -> None:
+    """Raise `SetupError` where the runs of a study cannot last for `days`."""
+    if not 0.0 < days <= MOST_DAYS:
+        raise SetupError(
+            f"the runs of a study are to last {days:g} days; give a number above 0 and up to {MOST_DAYS:g}"
+        )
+
+
+@dataclass(frozen=True)
+class Task:
+    """A run that a study needs: `case` on `mesh` for `days`, a snapshot every `snapshot_days`, in `directory`."""
+
+    directory: Path
+    case: Case
+    mesh: VoronoiMesh
+    days: float
+    snapshot_days: float
+    time_step: float | None = None
+
+    def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
+        """The run, made unless it is there already; where it fails there is none, but the reason."""
+        run = self.finished_run()
+        if run is not None:
+            return run, ""
+        tell(f"{self.directory.name}: {self.case.name} to day {self.days:g} on {self.mesh.n_cells} cells")
+        try:
+            self._run(progress)
+        except RunError as error:
+            tell(f"{self.directory.name}: {error}")
+            return None, str(error)
+        return read_run(self.directory), ""
+
+    def _run(self, progress: bool) -> None:
+        """Go on with the run where the directory holds a part of it, else run it from the start."""
+        try:
+            self._simulation(resume=True).run(self.days, progress)
+        except SetupError:
+            self._simulation(resume=False).run(self.days, progress)
+
+    def _simulation(self, resume: bool) -> Simulation:
+        """The run, to be gone on with or to replace what the directory holds."""
+        return Simulation(
+            self.mesh,
+            self.case,
+            self.directory,
+            time_step=self.time_step,
+            snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
+            resume=resume,
+            overwrite=not resume,
+        )
+
+    def finished_run(self) -> Run | None:
+        """The run where the directory holds just this one, on this very mesh, run to the end and readable."""
+        if not self._is_recorded():
+            return None
+        try:
+            return read_run(self.directory)
+        except (SetupError, MeshError):
+            return None
+
+    def _is_recorded(self) -> bool:
+        try:
+            record = load_record(self.directory)
+            configuration = record["configuration"]
+            return bool(
+                record["status"] == "completed"
+                and record["case"] == self.case.name
+                and record["parameters"] == recorded(self.case.parameters())
+                and record["days"] == self.days
+                and configuration["snapshot_interval"] == self.snapshot_days * SECONDS_PER_DAY
+                and configuration["sampling"] == "point"
+                and self.time_step in (None, configuration["time_step"])
+                and record["mesh_hash"] == mesh_hash(self.mesh.scaled(self.case.radius))
+            )
+        except (OSError, ValueError, KeyError, TypeError):
+            return False
+
+
+def write_table(rows: Sequence[Row], path: Path) -> None:
+    """Write rows as CSV; a column is empty where a row lacks it."""
+    columns = list(dict.fromkeys(name for row in rows for name in row))
+    with written_aside(path) as aside, aside.open("w", newline="") as file:
+        writer = csv.DictWriter(file, columns)
+        writer.writeheader()
+        writer.writerows(rows)
+
+
+def fitted_order(size: Sequence[float], error: Sequence[float]) -> float:
+    """Slope of the least-squares line through log(error) over log(size); NaN for fewer than two different sizes."""
+    x, y = np.array(size, dtype=float), np.array(error, dtype=float)
+    usable = y > 0.0
+    if len(np.unique(x[usable])) < 2:
+        return float("nan")
+    return float(np.polyfit(np.log(x[usable]), np.log(y[usable]), 1)[0])

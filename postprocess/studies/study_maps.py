@@ -1,0 +1,120 @@
+"""Maps of a study of meshes: where the error lives, on the globe and round the worst cell."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
+from matplotlib.colors import CenteredNorm
+from matplotlib.figure import Figure
+
+from mesh.arrays import Array, Index
+from mesh.geometry.sphere import normalize
+from postprocess.figures.plots import CENTRAL_LONGITUDE, draw_mollweide
+from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
+from postprocess.studies.mesh_study import Member, thickness_error
+
+IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
+"""Colours of the dots on cells with so many sides."""
+
+COLOUR_RANGE = 4.0
+"""Colours of maps of errors end at this many times the root mean square."""
+
+CLOSEUP_CELLS = 6.0
+"""Close-ups reach so many cells from the worst one."""
+
+MOST_DOTS = 400
+"""Dots are left out where irregular cells are more than this: they would hide the map."""
+
+
+def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
+    """Where the error of thickness lives: one map for each mesh, cell by cell, each with its own colours.
+
+    Dots mark pentagons (black) and heptagons (magenta), unless there are too many; a ring marks the worst cell.
+    """
+    figure, panels = _panel_for_each(members, 2, (6.4, 3.9))
+    for axes, member in panels:
+        error = thickness_error(member, day)
+        drawn = draw_mollweide(axes, member.mesh, error, _colours(error))
+        _mark_irregular_cells(axes, member)
+        worst = int(np.argmax(np.abs(error)))
+        axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
+        axes.set_title(
+            f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9
+        )
+        _colour_bar(figure, axes, drawn)
+    figure.suptitle(heading)
+    return figure
+
+
+def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
+    """The error of thickness round the worst cell of each mesh, with the number of sides of irregular cells."""
+    figure, panels = _panel_for_each(members, 4, (3.2, 4.2))
+    for axes, member in panels:
+        mesh, error = member.mesh, thickness_error(member, day)
+        worst = int(np.argmax(np.abs(error)))
+        view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
+        flat = orthographic(normalize(mesh.cell_points), *view)
+        reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.sphere_radius
+        near = (np.abs(flat[:, :2]).max(axis=1) < 1.5 * reach) & (flat[:, 2] > 0.0)
+        polygons = orthographic_polygons(mesh, *view)
+        kept = np.flatnonzero(near[polygons.cells])
+        cells = polygons.cells[kept]
+        outlines = [polygons.outlines[each] for each in kept]
+        collection = PolyCollection(outlines, array=error[cells], edgecolors="grey", linewidths=0.4, **_colours(error))
+        axes.add_collection(collection)
+        for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
+            x, y, _ = flat[cell]
+            axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=7, clip_on=True)
+        axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
+        axes.set_title(f"{member.family}\n{place_in_words(*np.degrees(view))}", fontsize=9)
+        _colour_bar(figure, axes, collection)
+    figure.suptitle(heading)
+    return figure
+
+
+def place_in_words(longitude: float, latitude: float) -> str:
+    """Longitude and latitude, degrees, to a tenth."""
+    return f"{longitude:.1f}°E {abs(latitude):.1f}°{'N' if latitude >= 0.0 else 'S'}"
+
+
+def _panel_for_each(
+    members: Sequence[Member], columns: int, size: tuple[float, float]
+) -> tuple[Figure, list[tuple[Axes, Member]]]:
+    """A panel of this size, inches, for each member that is compared with a solution."""
+    compared = [member for member in members if member.comparison is not None]
+    columns = min(columns, len(compared))
+    rows = -(-len(compared) // columns)
+    figure = Figure(figsize=(size[0] * columns, size[1] * rows + 0.5), layout="constrained")
+    grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
+    for axes in grid[len(compared) :]:
+        axes.axis("off")
+    return figure, list(zip(grid, compared, strict=False))
+
+
+def _colours(error: Array) -> dict:
+    """Blue to red with white at zero: a few cells that are far worse than all others do not wash out the rest."""
+    root_mean_square = float(np.sqrt(np.mean(error**2)))
+    return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=COLOUR_RANGE * root_mean_square or 1.0)}
+
+
+def _colour_bar(figure: Figure, axes: Axes, drawn: PolyCollection) -> None:
+    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.6, aspect=30, extend="both")
+    bar.set_label("error of thickness (m)", fontsize=7)
+    bar.ax.tick_params(labelsize=7)
+
+
+def _on_map(member: Member, cells: Sequence[int] | Index) -> tuple[Array, Array]:
+    """Coordinates of cells on the Mollweide map."""
+    longitude = (member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE + np.pi) % (2.0 * np.pi) - np.pi
+    x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
+    return x, y
+
+
+def _mark_irregular_cells(axes: Axes, member: Member) -> None:
+    sides = member.mesh.n_edges_on_cell
+    if np.count_nonzero(sides != 6) > MOST_DOTS:
+        return
+    for count, colour in IRREGULAR_COLOURS.items():
+        cells = np.flatnonzero(sides == count)
+        axes.plot(*_on_map(member, cells), ".", color=colour, markersize=3)

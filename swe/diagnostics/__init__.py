@@ -1,0 +1,1 @@
+"""What is measured of a state: invariants, and the part that each term has in their changes."""

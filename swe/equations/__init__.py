@@ -1,0 +1,1 @@
+"""The equations: tendency, plain kernels, terms and the model that holds them."""

@@ -1,0 +1,75 @@
+"""Biharmonic dissipation of velocity, du/dt = -nu lap(lap u), with lap u = grad(div u) + k x grad(curl u)."""
+
+import numpy as np
+
+from mesh.arrays import Array
+from swe.equations import kernels
+from swe.equations.model import ShallowWaterModel
+
+
+class BiharmonicDissipation:
+    """Applies the dissipation with the `coefficient` nu, m4/s, after each step of the other terms.
+
+    On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u) takes
+    energy away, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity stay. Like its parts, curl
+    and gradient, lap is consistent in the mean over neighbours, not at every edge.
+    """
+
+    def __init__(self, model: ShallowWaterModel, coefficient: float) -> None:
+        mesh = model.mesh
+        self.coefficient = coefficient
+        self._model = model
+        self._divergence = np.empty(mesh.n_cells)
+        self._vorticity = np.empty(mesh.n_vertices)
+        self._once, self._twice = np.empty(mesh.n_edges), np.empty(mesh.n_edges)
+
+    def acceleration(self, velocity: Array) -> Array:
+        """-nu lap(lap u) at edges (n_edges,), m/s2; the array is used again by the next call."""
+        self.laplacian(velocity, self._once)
+        self.laplacian(self._once, self._twice)
+        self._twice *= -self.coefficient
+        return self._twice
+
+    def apply(self, velocity: Array, time_step: float) -> None:
+        """Add the acceleration over `time_step` seconds to `velocity` in place."""
+        kernels.add_scaled(velocity, time_step, self.acceleration(velocity), velocity)
+
+    @property
+    def largest_time_step(self) -> float:
+        """Seconds up to which a step is stable: 2 / (nu L^2), with a bound L of the eigenvalues of lap.
+
+        By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, the gradient
+        of curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
+        """
+        mesh = self._model.mesh
+        flow, circulation = mesh.dv_edge / mesh.dc_edge, mesh.dc_edge / mesh.dv_edge
+        at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
+        at_vertices = circulation[mesh.edges_on_vertex].sum(axis=1) / mesh.area_triangle
+        bound = 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
+        rate = self.coefficient * bound**2
+        return 2.0 / rate if rate > 0.0 else float("inf")
+
+    def laplacian(self, velocity: Array, result: Array) -> None:
+        """Write lap u at edges (n_edges,), 1/(m s), into `result`."""
+        model, mesh = self._model, self._model.mesh
+        kernels.thickness_tendency(
+            velocity,
+            mesh.n_edges_on_cell,
+            mesh.edges_on_cell,
+            model.sign_on_cell,
+            mesh.dv_edge,
+            mesh.area_cell,
+            self._divergence,
+        )
+        kernels.relative_vorticity(
+            velocity, mesh.edges_on_vertex, model.sign_on_vertex, mesh.dc_edge, mesh.area_triangle, self._vorticity
+        )
+        kernels.vector_laplacian(
+            self._divergence,
+            self._vorticity,
+            mesh.cells_on_edge,
+            mesh.vertices_on_edge,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            result,
+        )

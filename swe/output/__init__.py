@@ -1,0 +1,1 @@
+"""What a run leaves on the disk: history, series, record and checkpoints."""

@@ -1,0 +1,137 @@
+"""Checkpoints of a run: the state to go on from, written aside and renamed; the last two are kept.
+
+A file is a zip archive of numpy arrays whose check sums tell whether it is whole.
+"""
+
+import os
+import warnings
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from mesh.safe_files import written_aside
+from swe.errors import RunError, SetupError, SetupWarning
+from swe.state import State
+
+KEPT = 2
+
+PATTERN = "checkpoint.*.npz"
+"""All checkpoints of a run."""
+
+NUMBERED = "checkpoint.[0-9]*.npz"
+"""Those at their intervals, at a stop and at an end that is none of a longer run, by the number of steps."""
+
+SHARED = "checkpoint.shared.npz"
+"""The last state that a longer run has too (`swe.stepping.schedule.last_shared`); no numbered one may hold it."""
+
+COUNTS = ("steps", "snapshots", "rows", "history_size", "diagnostics_size")
+"""Integers of a checkpoint."""
+
+
+@dataclass(frozen=True, eq=False)
+class Checkpoint:
+    """A state at `time`, seconds since the start, after `steps` steps.
+
+    `snapshots` and `rows` are the numbers of snapshots and of rows of diagnostics that were written until then, and
+    `history_size` and `diagnostics_size` the bytes that their files had.
+    """
+
+    state: State
+    time: float
+    steps: int
+    snapshots: int
+    rows: int
+    history_size: int
+    diagnostics_size: int
+
+
+def write_checkpoint(directory: Path, checkpoint: Checkpoint, shared: bool = False) -> None:
+    """Write a checkpoint to a run directory and remove all but the last two; raise `RunError` where that fails.
+
+    The one `shared` with longer runs has a place of its own, where it stays until another takes it.
+    """
+    path = directory / (SHARED if shared else _name(checkpoint.steps))
+    try:
+        with written_aside(path) as aside, aside.open("wb") as file:
+            np.savez(
+                file,
+                thickness=checkpoint.state.thickness,
+                normal_velocity=checkpoint.state.normal_velocity,
+                time=checkpoint.time,
+                counts=np.array([getattr(checkpoint, name) for name in COUNTS], np.int64),
+            )
+            file.flush()
+            os.fsync(file.fileno())
+        for old in checkpoint_paths(directory)[:-KEPT]:
+            old.unlink()
+    except OSError as error:
+        raise RunError(f"{path} cannot be written ({error.strerror or error}); is the disk full?") from error
+
+
+def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float = float("inf")) -> Checkpoint | None:
+    """The last checkpoint of a run directory that is whole and not after `latest`, seconds; None where there is none.
+
+    Warns with `SetupWarning` of one that is damaged; raises `SetupError` where all are.
+    """
+    shared = [path for path in (directory / SHARED,) if path.exists()]
+    numbered = checkpoint_paths(directory)[::-1]
+    found, any_whole = [], False
+    for paths in (shared, numbered):
+        for path in paths:
+            try:
+                checkpoint = _read(path, n_cells, n_edges)
+            except Exception as error:  # of all kinds, as any byte may be another
+                warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
+                continue
+            any_whole = True
+            if checkpoint.time <= latest:
+                found.append(checkpoint)
+                break
+    if (shared or numbered) and not any_whole:
+        raise SetupError(f"no checkpoint in {directory} is whole; start anew (--force)")
+    return max(found, key=lambda checkpoint: checkpoint.time, default=None)
+
+
+def remove_checkpoints(directory: Path, after: int = 0) -> None:
+    """Remove the checkpoints of a run that is to be replaced, or those after so many steps where it takes another way.
+
+    The one that is shared goes with all of them only.
+    """
+    if after == 0:
+        (directory / SHARED).unlink(missing_ok=True)
+    for path in checkpoint_paths(directory):
+        if path.name > _name(after):
+            path.unlink()
+
+
+def remove_superseded(directory: Path, steps: int) -> None:
+    """Remove the checkpoint that is shared where there is a numbered one after `steps` steps, all of the run."""
+    if (directory / _name(steps)).exists():
+        (directory / SHARED).unlink(missing_ok=True)
+
+
+def _name(steps: int) -> str:
+    return f"checkpoint.{steps:010d}.npz"
+
+
+def checkpoint_paths(directory: Path) -> list[Path]:
+    """Checkpoints of a run directory at their intervals, the oldest first."""
+    return sorted(directory.glob(NUMBERED))
+
+
+def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:
+    """The checkpoint at `path`; raises one of several errors where it is none of such a mesh."""
+    with np.load(path) as file:
+        state = State(file["thickness"], file["normal_velocity"])
+        time, counts = file["time"], file["counts"]
+    for name, values, size in (("thickness", state.thickness, n_cells), ("velocity", state.normal_velocity, n_edges)):
+        if values.shape != (size,) or values.dtype != np.float64 or not np.isfinite(values).all():
+            raise ValueError(f"its {name} is not that of a state on the mesh")
+    if not state.thickness.min() > 0.0:
+        raise ValueError("its thickness is not positive")
+    if counts.shape != (len(COUNTS),) or counts.dtype != np.int64 or counts.min() < 1:
+        raise ValueError("its counts are no positive whole numbers")
+    if time.shape != () or time.dtype != np.float64 or not 0.0 < time < np.inf:
+        raise ValueError("its time is not a positive number of seconds")
+    return Checkpoint(state, float(time), **dict(zip(COUNTS, counts.tolist(), strict=True)))

@@ -1,0 +1,360 @@
+"""The files of a run directory: the mesh, snapshots, diagnostics and the record of the run (DESIGN, section 5).
+
+Files that grow are of the classic format with 64-bit offsets: rows follow each other, so that a file is readable
+whatever happens to the program, and rows can be written again. Equal runs give equal files, byte for byte.
+"""
+
+import json
+import time as clock
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+import netCDF4
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.conventions import BY_NAME
+from mesh.discrete.operators import velocity_at_cells
+from mesh.files.io import mesh_attributes, write_mesh_variables
+from mesh.safe_files import dataset, netcdf_lock, opened_dataset, written_aside
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.diagnostics.budgets import rate_series, rates_of_time
+from swe.diagnostics.invariants import Changes, Invariants
+from swe.equations.model import Diagnosis, ShallowWaterModel
+from swe.errors import RunError, SetupError
+from swe.state import State
+
+HISTORY_FILE = "history.nc"
+DIAGNOSTICS_FILE = "diagnostics.nc"
+MESH_FILE = "mesh.nc"
+RECORD_FILE = "run.json"
+FIGURES_FOLDER = "figures"
+
+SECONDS_BETWEEN_WRITES = 1.0
+"""Rows of diagnostics are written together, as each writing takes as long as many rows."""
+
+GEOMETRY = frozenset(BY_NAME) - {
+    *("n_edges_on_edge", "edges_on_edge", "weights_on_edge", "kite_areas_on_vertex"),
+    *("angle_edge", "mesh_density", "boundary_vertex"),
+}
+"""Mesh arrays repeated in the history file, so that it can be plotted and integrated by itself."""
+
+FIELDS = {
+    "thickness": ("nCells", "m", "thickness of the fluid"),
+    "surface_height": ("nCells", "m", "height of the free surface, thickness plus topography"),
+    "kinetic_energy": ("nCells", "m2 s-2", "kinetic energy per unit mass"),
+    "velocity_zonal": ("nCells", "m s-1", "eastward velocity, least squares over the edges of the cell"),
+    "velocity_meridional": ("nCells", "m s-1", "northward velocity, least squares over the edges of the cell"),
+    "normal_velocity": ("nEdges", "m s-1", "velocity along the normal, from cellsOnEdge 1 to 2"),
+    "relative_vorticity": ("nVertices", "s-1", "relative vorticity"),
+    "potential_vorticity": ("nVertices", "m-1 s-1", "potential vorticity (f + zeta)/h"),
+}
+"""Snapshots: name -> place, units, meaning."""
+
+SERIES = {
+    "mass": ("m3", "integral of thickness"),
+    "mass_change": ("1", "change of mass relative to the initial mass"),
+    "total_energy": ("m5 s-2", "kinetic plus potential energy"),
+    "total_energy_change": ("1", "change of total energy relative to the initial available energy"),
+    "total_energy_change_of_total": ("1", "change of total energy relative to the initial total energy"),
+    "kinetic_energy": ("m5 s-2", "kinetic energy"),
+    "available_potential_energy": ("m5 s-2", "potential energy above that of a level surface"),
+    "potential_enstrophy": ("m s-2", "integral of h q2 / 2"),
+    "potential_enstrophy_change": ("1", "change of potential enstrophy relative to its initial value"),
+    "absolute_vorticity": ("m2 s-1", "integral of f + zeta"),
+    "absolute_vorticity_change": ("1", "change of absolute vorticity relative to the integral of |f|"),
+    "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges, |u| dt / d if the wind is prescribed"),
+    "max_speed": ("m s-1", "largest speed sqrt(2 K) over all cells"),
+    **rate_series(),
+}
+"""Diagnostics: name -> units, meaning."""
+
+TIME_COORDINATE = "Time"
+
+SCHEME = "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy"
+
+PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
+
+
+COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVertices": "lonVertex latVertex"}
+"""Where the values at cells, edges and vertices lie, as the CF conventions have it."""
+
+
+def create_history(path: Path, mesh: VoronoiMesh, topography: Array, description: Mapping[str, object]) -> None:
+    """Make a history file without snapshots; raise `RunError` where it cannot be written.
+
+    Attributes name what the `description` of the run tells.
+    """
+    with _new_file(path) as file:
+        file.setncatts({**mesh_attributes(mesh, "snapshots of a shallow-water run"), **_attributes(description)})
+        write_mesh_variables(file, mesh, GEOMETRY)
+        for names in COORDINATES.values():
+            longitude, latitude = names.split()
+            file[longitude].standard_name, file[latitude].standard_name = "longitude", "latitude"
+        _define_time(file)
+        _define(file, "topography", ("nCells",), "m", "height of the bottom")
+        file["topography"][:] = topography
+        for name, (place, units, long_name) in FIELDS.items():
+            _define(file, name, ("Time", place), units, long_name)
+
+
+def create_diagnostics(path: Path, description: Mapping[str, object]) -> None:
+    """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
+    with _new_file(path) as file:
+        file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(description)})
+        _define_time(file)
+        for name, (units, long_name) in SERIES.items():
+            _define(file, name, ("Time",), units, long_name)
+
+
+def _attributes(description: Mapping[str, object]) -> dict[str, object]:
+    """Global attributes that tell which run a file is of; nothing that differs between equal runs."""
+    configuration = description["configuration"]
+    assert isinstance(configuration, dict)
+    return {
+        "title": f"{description['case']}, a run of the shallow-water model of trisk",
+        "case": description["case"],
+        "parameters": json.dumps(description["parameters"]),
+        "mesh_hash": description["mesh_hash"],
+        "scheme": SCHEME,
+        **configuration,
+        "trisk_version": package_versions()["trisk"],
+    }
+
+
+@contextmanager
+def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
+    """A file to define and fill. One that cannot be written is left open: the library does not survive closing it."""
+    with netcdf_lock:
+        try:
+            file = opened_dataset(path, "w", format="NETCDF3_64BIT_OFFSET")
+            file.set_fill_off()
+            yield file
+            file.sync()
+        except (OSError, RuntimeError) as error:
+            raise RunError(f"{path} cannot be written ({error}); is the disk full?") from error
+        file.close()
+
+
+class _TimeFile:
+    """A file that grows along time; `rows` are those that stay, all by default, and what follows them is cut off.
+
+    Raises `SetupError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
+    `size` bytes, or its first `rows` are not those of ascending times.
+    """
+
+    def __init__(self, path: Path, names: Iterable[str], rows: int | None = None, size: int = 0) -> None:
+        self._path = path
+        self._failed = False
+        with netcdf_lock:
+            self._open(path, names, rows, size)
+
+    def _open(self, path: Path, names: Iterable[str], rows: int | None, size: int) -> None:
+        try:
+            self._file = _opened(path)
+            present = len(self._file.dimensions["Time"])
+            missing = {"time", *names} - set(self._file.variables)
+        except (OSError, RuntimeError, KeyError) as error:
+            raise SetupError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
+        self.rows = present if rows is None else rows
+        times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
+        if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
+            self._file.close()
+            raise SetupError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
+        if self.rows < present:
+            self._file.close()
+            _cut_off(path, self.rows, size)
+            self._file = _opened(path)
+        self._file.set_fill_off()
+
+    @property
+    def size(self) -> int:
+        """Bytes of the file."""
+        return self._path.stat().st_size
+
+    def _write(self, values: Mapping[str, Array]) -> None:
+        """Write new rows (n, ...) of every variable."""
+        rows = slice(self.rows, self.rows + len(values["time"]))
+        try:
+            with netcdf_lock:
+                for name, value in values.items():
+                    self._file[name][rows] = value
+                if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
+                    self._file[TIME_COORDINATE][rows] = values["time"]
+                self._file.sync()
+        except (OSError, RuntimeError) as error:
+            self._failed = True
+            raise RunError(f"{self._path} cannot be written ({error}); is the disk full?") from error
+        self.rows = rows.stop
+
+    def close(self) -> None:
+        """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
+        if not self._failed:
+            with netcdf_lock:
+                self._file.close()
+
+
+def _opened(path: Path) -> netCDF4.Dataset:
+    """The file, to be read and written."""
+    file = opened_dataset(path, "r+")
+    # Values are written as they are; looking for masks and scales takes as long as writing them.
+    file.set_auto_maskandscale(False)
+    return file
+
+
+def _cut_off(path: Path, rows: int, size: int) -> None:
+    """Leave the first `rows` rows of a file of the classic format, which has `size` bytes then."""
+    with path.open("r+b") as file:
+        file.seek(4)  # behind the letters that tell the format stands the number of rows
+        file.write(rows.to_bytes(4, "big"))
+        file.truncate(size)
+
+
+class HistoryFile(_TimeFile):
+    """Snapshots, written one by one."""
+
+    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, FIELDS, rows, size)
+
+    def append(self, time: float, model: ShallowWaterModel, state: State, diagnosis: Diagnosis) -> None:
+        """Write the snapshot of `state` and of what follows from it at `time`, seconds since the start."""
+        zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
+        fields = {
+            **vars(diagnosis),
+            "thickness": state.thickness,
+            "surface_height": state.thickness + model.topography,
+            "normal_velocity": state.normal_velocity,
+            "velocity_zonal": zonal,
+            "velocity_meridional": meridional,
+            "time": np.array(time),
+        }
+        self._write({name: values[None] for name, values in fields.items()})
+
+
+class DiagnosticsFile(_TimeFile):
+    """Time series of invariants and of what limits the time step; rows wait for each other for up to a second."""
+
+    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, SERIES, rows, size)
+        self._waiting: list[dict[str, float]] = []
+        self._written = clock.monotonic()
+        self._last: dict[str, float] | None = None
+        if self.rows > 0:
+            with netcdf_lock:
+                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *SERIES)}
+
+    def append(
+        self,
+        time: float,
+        invariants: Invariants,
+        changes: Changes,
+        rates: Mapping[str, float],
+        courant_number: float,
+        max_speed: float,
+    ) -> None:
+        """Add the row of `time`, seconds since the start; `rates` are those of the terms (`measure_rates`)."""
+        row = {
+            "time": time,
+            "mass": invariants.mass,
+            "mass_change": changes.mass,
+            "total_energy": invariants.total_energy,
+            "total_energy_change": changes.total_energy,
+            "total_energy_change_of_total": changes.total_energy_of_total,
+            "kinetic_energy": invariants.kinetic_energy,
+            "available_potential_energy": invariants.available_potential_energy,
+            "potential_enstrophy": invariants.potential_enstrophy,
+            "potential_enstrophy_change": changes.potential_enstrophy,
+            "absolute_vorticity": invariants.absolute_vorticity,
+            "absolute_vorticity_change": changes.absolute_vorticity,
+            "courant_number": courant_number,
+            "max_speed": max_speed,
+            **rates,
+        }
+        row.update(rates_of_time(row, self._last))
+        self._last = row
+        self._waiting.append(row)
+        if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
+            self.flush()
+
+    def flush(self) -> None:
+        """Write the rows that wait."""
+        waiting, self._waiting = self._waiting, []
+        if waiting:
+            self._write({name: np.array([row[name] for row in waiting]) for name in waiting[0]})
+        self._written = clock.monotonic()
+
+    def close(self) -> None:
+        """Write the rows that wait, and close the file; the former may raise `RunError`."""
+        try:
+            self.flush()
+        finally:
+            super().close()
+
+
+def read_record(directory: Path) -> dict[str, object] | None:
+    """What `run.json` holds, None where there is none; raise `SetupError` where it is no record of a run."""
+    path = directory / RECORD_FILE
+    try:
+        return load_record(directory)
+    except (FileNotFoundError, NotADirectoryError):
+        return None
+    except TypeError as error:
+        raise SetupError(f"{path} is no record of a run; remove it or choose another directory") from error
+    except (OSError, ValueError, RecursionError) as error:
+        raise SetupError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
+
+
+def load_record(directory: Path) -> dict[str, Any]:
+    """What `run.json` holds; raises what comes of reading it, or `TypeError`, where it is no record."""
+    record = json.loads((directory / RECORD_FILE).read_text())
+    if not isinstance(record, dict):
+        raise TypeError(f"{RECORD_FILE} is not the record of a run")
+    return record
+
+
+def write_record(directory: Path, record: dict[str, object]) -> None:
+    """Write `run.json`, replacing an earlier one as a whole."""
+    with written_aside(directory / RECORD_FILE) as aside:
+        aside.write_text(json.dumps(record, indent=2) + "\n")
+
+
+def package_versions() -> dict[str, str]:
+    """Versions of this package and of those that results depend on."""
+    versions = {}
+    for name in PACKAGES:
+        try:
+            versions[name] = version(name)
+        except PackageNotFoundError:
+            versions[name] = "not installed"
+    return versions
+
+
+def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
+    variable = file.createVariable(name, "f8", dimensions)
+    variable.setncatts({"units": units, "long_name": long_name})
+    if dimensions[-1] in COORDINATES:
+        variable.coordinates = COORDINATES[dimensions[-1]]
+
+
+def _define_time(file: netCDF4.Dataset) -> None:
+    """Define `time`, and again under the name of the dimension, which makes it a coordinate to select by."""
+    file.createDimension("Time", None)
+    attributes = {
+        "units": "seconds since 2000-01-01 00:00:00",
+        "long_name": "time since the start of the run",
+        "calendar": "proleptic_gregorian",
+    }
+    file.createVariable("time", "f8", ("Time",)).setncatts(attributes)
+    file.createVariable(TIME_COORDINATE, "f8", ("Time",)).setncatts(
+        {**attributes, "standard_name": "time", "axis": "T"}
+    )
+
+
+def read_series(path: Path) -> dict[str, Array]:
+    """All series of a diagnostics file by name, `time` among them; runs of earlier versions have no rates."""
+    with dataset(path) as file:
+        optional = set(rate_series()) - set(file.variables)
+        return {name: np.asarray(file[name][:]) for name in ("time", *SERIES) if name not in optional}

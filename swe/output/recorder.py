@@ -1,0 +1,397 @@
+"""What a run leaves in its directory, and how it goes on from there."""
+
+import hashlib
+import os
+import time as clock
+import warnings
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import numba
+import numpy as np
+
+from mesh.errors import MeshError
+from mesh.files.io import mesh_hash, write_mesh
+from mesh.plain import recorded
+from mesh.safe_files import held, place_of, remove_leftovers
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.configuration import Configuration
+from swe.constants import SECONDS_PER_DAY
+from swe.diagnostics.budgets import measure_rates
+from swe.diagnostics.invariants import Invariants, measure_invariants, relative_changes
+from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.model import ShallowWaterModel
+from swe.errors import RunError, RunStopped, SetupError, SetupWarning
+from swe.output.checkpoint import (
+    PATTERN,
+    Checkpoint,
+    last_checkpoint,
+    remove_checkpoints,
+    remove_superseded,
+    write_checkpoint,
+)
+from swe.output.files import (
+    DIAGNOSTICS_FILE,
+    HISTORY_FILE,
+    MESH_FILE,
+    RECORD_FILE,
+    DiagnosticsFile,
+    HistoryFile,
+    create_diagnostics,
+    create_history,
+    package_versions,
+    read_record,
+    write_record,
+)
+from swe.state import State
+from swe.stepping.time_stepping import Tendency
+
+
+@dataclass(frozen=True, eq=False)
+class RunDescription:
+    """What is written of a run that does not change in its course, and what its diagnostics are made with."""
+
+    case_name: str
+    parameters: dict[str, float]
+    configuration: Configuration
+    model: ShallowWaterModel
+    dissipation: BiharmonicDissipation | None
+    initial_state: State
+    initial_invariants: Invariants
+
+    @property
+    def mesh(self) -> VoronoiMesh:
+        """The mesh, scaled to the radius of the case."""
+        return self.model.mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """Where a run stands: seconds since its start, steps taken, state, Courant number, and what gives the tendency."""
+
+    time: float
+    steps: int
+    state: State
+    courant_number: float
+    tendency: Tendency
+
+
+class Recorder:
+    """Writes snapshots, diagnostics, checkpoints and the record of a run.
+
+    Raises `SetupError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
+    go on, or one to go on with that was made otherwise.
+    """
+
+    def __init__(self, run: RunDescription, directory: Path, overwrite: bool, resume: bool) -> None:
+        self.directory = directory
+        self._days = 0.0
+        self._days_before: float | None = None
+        self._seconds_before = 0.0
+        self._run = run
+        self._description = _description(run)
+        self._versions = package_versions()
+        self._history: HistoryFile | None = None
+        self._diagnostics: DiagnosticsFile | None = None
+        self._begun = clock.perf_counter()
+        self._reached: Checkpoint | None = None
+        self._overwrite, self._resume = overwrite, resume
+        self._found = run_to_go_on_with(directory, overwrite, resume)
+        self._began = False
+        if self._found is not None:
+            self._require_same(self._found)
+
+    @property
+    def resumed(self) -> bool:
+        """Whether the run goes on from what an earlier one left."""
+        return self._found is not None
+
+    def _require_same(self, before: dict[str, object]) -> None:
+        """Raise `SetupError` where the run of an earlier record was made otherwise; take over its days and time."""
+        for name, now in self._description.items():
+            then = before.get(name)
+            if then != now:
+                raise SetupError(f"{self.directory} holds {_difference(name, then, now)}; {HOW_TO_GO_ON}")
+        if before.get("versions") != self._versions:
+            warnings.warn(
+                f"{self.directory} was begun with other versions of packages; its files may differ in the last digits",
+                SetupWarning,
+                stacklevel=4,
+            )
+        self._days_before = days_of(before, self.directory)
+        self._seconds_before = _number_in(before, "wall_seconds", self.directory)
+
+    def restore(self) -> Checkpoint | None:
+        """The last checkpoint of the run to be gone on with; None, with a warning, where that begins again."""
+        if not self.resumed:
+            return None
+        self._reached = self._last_checkpoint()
+        if self._reached is None:
+            warnings.warn(f"{self.directory} holds no checkpoint; the run begins again", SetupWarning, stacklevel=3)
+        return self._reached
+
+    def other_end(self, days: float) -> float | None:
+        """Days to which the run to be gone on with was made, once, where these are others than `days`."""
+        before, self._days_before = self._days_before, None
+        return None if before == days else before
+
+    def restore_shared(self, days: float, shared: float) -> Checkpoint | None:
+        """The last checkpoint up to `shared` seconds, from which a run to `days` goes on; None to begin again."""
+        self._reached = self._last_checkpoint(shared)
+        if self._reached is None and shared > 0.0:
+            warnings.warn(
+                f"{self.directory} holds no checkpoint from which a run to day {days:g} goes on; the run begins again",
+                SetupWarning,
+                stacklevel=4,
+            )
+        return self._reached
+
+    def _last_checkpoint(self, latest: float = float("inf")) -> Checkpoint | None:
+        mesh = self._run.mesh
+        return last_checkpoint(self.directory, mesh.n_cells, mesh.n_edges, latest=latest)
+
+    def _require_unchanged(self) -> None:
+        """Raise `SetupError` where another run wrote to the directory since this one looked at it."""
+        if not self._began and run_to_go_on_with(self.directory, self._overwrite, self._resume) != self._found:
+            raise SetupError(f"{self.directory} was written to by another run meanwhile; start again")
+        self._began = True
+
+    @contextmanager
+    def recording(self, days: float, shared: float, now: Callable[[], Moment]) -> Iterator[None]:
+        """Keep the files open in the course of a run to `days`, and write how it ended; `now` tells where it stands.
+
+        Up to `shared` seconds the run is that of any longer one.
+        """
+        self._days = days
+        self._begun = clock.perf_counter()
+        self._make_directory()
+        with held(self.directory) as free:
+            if not free:
+                raise SetupError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
+            self._require_unchanged()
+            try:
+                self._open(now())
+                yield
+                self._close()
+            except SetupError:
+                self._close()  # the files are not those of a run to go on with, and stay as they are
+                raise
+            except BaseException as error:
+                stopped = isinstance(error, RunStopped | KeyboardInterrupt)
+                self._end(now(), "interrupted" if stopped else "failed", str(error))
+                raise
+            if shared == now().time:
+                remove_superseded(self.directory, now().steps)
+            self._end(now(), "completed")
+
+    def _open(self, moment: Moment) -> None:
+        """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
+        remove_leftovers(self.directory, (*FILES, PATTERN))
+        history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
+        starting, reached = moment.steps == 0, self._reached
+        if starting:
+            remove_checkpoints(self.directory)
+            (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
+            self._write_status(moment, "running")
+            create_history(history, self._run.mesh, self._run.model.topography, self._description)
+            create_diagnostics(diagnostics, self._description)
+        if reached is None:
+            self._history, self._diagnostics = HistoryFile(history), DiagnosticsFile(diagnostics)
+        else:
+            self._history = HistoryFile(history, reached.snapshots, reached.history_size)
+            self._diagnostics = DiagnosticsFile(diagnostics, reached.rows, reached.diagnostics_size)
+            remove_checkpoints(self.directory, after=reached.steps)
+            self._reached = None
+        self._write_status(moment, "running")
+        if starting or reached is not None:
+            self._write_mesh()
+        if starting:
+            self.record(moment, True, True)
+
+    def _write_mesh(self) -> None:
+        try:
+            write_mesh(self._run.mesh, self.directory / MESH_FILE, f"mesh of a run of {self._run.case_name}")
+        except MeshError as error:
+            raise RunError(str(error)) from error
+
+    def _make_directory(self) -> None:
+        try:
+            place_of(self.directory).mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise SetupError(
+                f"{self.directory} cannot be made ({error.strerror or error}); choose another directory"
+            ) from error
+
+    def record(self, moment: Moment, snapshot: bool, diagnostics: bool) -> None:
+        """Write the state of a moment to the files that are due."""
+        assert self._history is not None
+        assert self._diagnostics is not None
+        if not (snapshot or diagnostics):
+            return
+        run, model, state = self._run, self._run.model, moment.state
+        diagnosis = model.diagnose(state)
+        if snapshot:
+            self._history.append(moment.time, model, state, diagnosis)
+        if diagnostics:
+            tendency = state.empty_like()
+            moment.tendency(state, tendency)
+            invariants = measure_invariants(model, state, diagnosis)
+            self._diagnostics.append(
+                moment.time,
+                invariants,
+                relative_changes(run.initial_invariants, invariants),
+                measure_rates(model, state, diagnosis, tendency, run.dissipation),
+                moment.courant_number,
+                float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
+            )
+
+    def checkpoint(self, moment: Moment, shared: bool = False) -> None:
+        """Write a checkpoint, after all that comes before it; see `write_checkpoint`."""
+        assert self._history is not None
+        assert self._diagnostics is not None
+        self._diagnostics.flush()
+        write_checkpoint(
+            self.directory,
+            Checkpoint(
+                moment.state,
+                moment.time,
+                moment.steps,
+                self._history.rows,
+                self._diagnostics.rows,
+                self._history.size,
+                self._diagnostics.size,
+            ),
+            shared,
+        )
+        self._write_status(moment, "running")
+
+    def _close(self) -> None:
+        for file in (self._history, self._diagnostics):
+            if file is not None:
+                file.close()
+        self._history = self._diagnostics = None
+
+    def _end(self, moment: Moment, status: str, reason: str = "") -> None:
+        """Close what is open and write the final status, however little of it the disk takes."""
+        try:
+            self._close()
+        except RunError:
+            if status == "completed":
+                raise
+        if self.directory.is_dir():
+            self._write_status(moment, status, reason)
+
+    def _write_status(self, moment: Moment, status: str, reason: str = "") -> None:
+        record = {
+            "status": status,
+            "reason": reason,
+            "days": self._days,
+            "day_reached": moment.time / SECONDS_PER_DAY,
+            "steps": moment.steps,
+            "wall_seconds": self._seconds_before + clock.perf_counter() - self._begun,
+            "threads": numba.get_num_threads(),
+            "cells": self._run.mesh.n_cells,
+            **self._description,
+            "versions": self._versions,
+        }
+        try:
+            write_record(self.directory, record)
+        except OSError as error:
+            if status == "failed":
+                return  # the error that comes first is the one to tell
+            raise RunError(
+                f"{self.directory / RECORD_FILE} cannot be written ({error.strerror or error}); is the disk full?"
+            ) from error
+
+
+FILES = (RECORD_FILE, MESH_FILE, HISTORY_FILE, DIAGNOSTICS_FILE)
+
+HOW_TO_GO_ON = "give the same options, or another directory"
+
+
+def _description(run: RunDescription) -> dict[str, object]:
+    """What a run must have in common with the one that it goes on from, as the record has it."""
+    try:
+        as_recorded = recorded(run.parameters)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise SetupError(
+            f"the parameters of {run.case_name} cannot be recorded ({error}); give numbers, words, or lists of them"
+        ) from error
+    return {
+        "mesh_hash": mesh_hash(run.mesh),
+        "case": run.case_name,
+        "parameters": as_recorded,
+        "configuration": asdict(run.configuration),
+        "start_hash": _start_hash(run),
+    }
+
+
+def _start_hash(run: RunDescription) -> str:
+    """SHA-256, in hexadecimal, of the initial state, the topography and the Coriolis parameter."""
+    digest = hashlib.sha256(np.float64(run.model.gravity).tobytes())
+    for values in (*vars(run.initial_state).values(), run.model.topography, run.model.coriolis):
+        digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
+
+
+def _difference(name: str, then: object, now: object) -> str:
+    """What is different between the run that a directory holds and the one that is asked for, as part of a sentence."""
+    if isinstance(then, dict) and isinstance(now, dict):
+        for key in (*now, *then):
+            if then.get(key) != now.get(key):
+                return _difference(key, then.get(key), now.get(key))
+    if name == "mesh_hash":
+        return "a run on another mesh"
+    if name == "start_hash":
+        return "a run of a case with another start, topography or rotation"
+    return f"a run with {name.replace('_', ' ')} = {_shown(then)}, not {_shown(now)}"
+
+
+def _shown(value: object) -> str:
+    return f"{value:.15g}" if isinstance(value, float | int) else str(value)
+
+
+def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:
+    """The record of the run in `directory` where it is to be gone on with; None where a run begins there.
+
+    Raises `SetupError` where the directory cannot be used, or holds a run that is neither to be replaced nor to go on.
+    """
+    existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
+    if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
+        raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
+    if overwrite and resume:
+        raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
+    present = [path for name in (*FILES, PATTERN) for path in directory.glob(name)]
+    for path in present:
+        if not path.is_file():
+            raise SetupError(f"{path} is no file, but a run has a file of that name; choose another directory")
+    if overwrite:
+        return None
+    before = read_record(directory)
+    if before is None and present:
+        raise SetupError(
+            f"{directory} holds {present[0].name}, but no {RECORD_FILE} of a run; choose another directory, or replace "
+            "what it holds (--force)"
+        )
+    if before is not None and not resume:
+        raise SetupError(
+            f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "
+            "(--force)"
+        )
+    return before
+
+
+def days_of(record: dict[str, object], directory: Path) -> float:
+    """Days that a run was to last according to its `record`; raise `SetupError` where that does not tell."""
+    return _number_in(record, "days", directory)
+
+
+def _number_in(record: dict[str, object], name: str, directory: Path) -> float:
+    value = record.get(name)
+    if not isinstance(value, int | float) or not 0.0 <= value < float("inf"):
+        raise SetupError(
+            f"{directory / RECORD_FILE} does not tell the {name.replace('_', ' ')} of the run; start anew (--force)"
+        )
+    return float(value)

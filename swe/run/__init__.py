@@ -1,0 +1,1 @@
+"""The run: simulation, signals, progress and threads."""

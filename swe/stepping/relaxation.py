@@ -1,0 +1,61 @@
+"""Relaxation of a Runge-Kutta step: its increment is scaled so that total energy stays exactly what it was.
+
+Ketcheson (2019), Relaxation Runge-Kutta methods. Along an increment (p, v) of thickness and velocity the total energy
+of the scheme is a cubic in the factor, without a constant term once the energy at the start is taken away:
+
+    E(h + c p, u + c v) - E(h, u) = c (e_1 + c e_2 + c^2 e_3)
+
+so the factor is the root near 1 of a quadratic, whose coefficients are sums of products with the increment.
+"""
+
+import numpy as np
+
+from swe.diagnostics.invariants import mean_level
+from swe.equations import kernels
+from swe.equations.model import ShallowWaterModel
+from swe.state import State
+
+NEWTON_STEPS = 4
+"""Of the quadratic, whose root differs from 1 by some 1e-3 at the default time step, and by less at shorter ones."""
+
+FARTHEST = 0.1
+"""A root farther from 1 is that of round-off, where the flow is at rest or steady; the step is then left as it is."""
+
+
+class Relaxation:
+    """Finds factors that keep the energy of `model`, a flow over topography whose wind is not prescribed."""
+
+    def __init__(self, model: ShallowWaterModel, state: State) -> None:
+        self._model = model
+        # Mass is conserved, so heights may count from any level; from the mean one their products are small.
+        self._height = model.topography - mean_level(model, state)
+
+    def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
+        """e_1, e_2 and e_3 of the change of energy along the increment from `state` to `after`, m5/s2."""
+        mesh, sums = self._model.mesh, np.empty((kernels.BLOCKS, 3))
+        kernels.energy_along(
+            state.thickness,
+            state.normal_velocity,
+            after.thickness,
+            after.normal_velocity,
+            self._height,
+            self._model.gravity,
+            mesh.area_cell,
+            mesh.dv_edge,
+            mesh.dc_edge,
+            mesh.cells_on_edge,
+            sums,
+        )
+        first, second, third = sums.sum(axis=0).tolist()
+        return first, second, third
+
+    def factor(self, state: State, after: State) -> float:
+        """The factor of the increment from `state` to `after` with which the energy stays that of `state`."""
+        first, second, third = self.coefficients(state, after)
+        off = 0.0  # the factor less one
+        for _ in range(NEWTON_STEPS):
+            slope = second + 2.0 * third * (1.0 + off)
+            if slope == 0.0:
+                return 1.0
+            off -= ((first + second + third) + off * (second + 2.0 * third) + off * off * third) / slope
+        return 1.0 + off if abs(off) <= FARTHEST else 1.0

@@ -1,0 +1,138 @@
+"""From one output time to the next: steps of one length, or scaled by relaxation, with or without dissipation."""
+
+from typing import Protocol
+
+from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.kernels import count_unsound, move_along
+from swe.state import State
+from swe.stepping.relaxation import Relaxation
+from swe.stepping.schedule import equal_step, steps_towards
+
+LANDINGS = 5
+"""Attempts at a step whose scaled length ends at an output time; two do, but where round-off blurs the factor."""
+
+LANDED = 1e-10
+"""Part of a step by which the last one may miss the output time that the clock shows."""
+
+
+class Method(Protocol):
+    """A Runge-Kutta method: `FusedRungeKutta` or its plain twin, `RungeKutta`."""
+
+    @property
+    def unsound(self) -> int:
+        """Number of values that are not sound after the last step."""
+
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+        """Take up to `steps` steps in place, fewer where one left unsound values; give their number."""
+
+
+class Stepper(Protocol):
+    """Takes a state through time."""
+
+    @property
+    def unsound(self) -> int:
+        """Number of values that are not sound after the last step."""
+
+    def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
+        """Take up to `most` steps of about `time_step` seconds from `time` towards `event`, which none passes.
+
+        Gives the time after them and their number.
+        """
+
+
+class FixedSteps:
+    """Steps of one length, but for the last before an event, which may be shorter."""
+
+    def __init__(self, method: Method) -> None:
+        self._method = method
+
+    @property
+    def unsound(self) -> int:
+        """Number of values that are not sound after the last step."""
+        return self._method.unsound
+
+    def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
+        """See `Stepper`."""
+        step, times = steps_towards(time, event, time_step, most)
+        taken = self._method.advance(state, step, len(times))
+        return times[taken - 1], taken
+
+
+class DissipatingMethod:
+    """A method with dissipation after each of its steps, so that what either does to energy is known by itself."""
+
+    def __init__(self, method: Method, dissipation: BiharmonicDissipation) -> None:
+        self._method = method
+        self._dissipation = dissipation
+        self.unsound = 0
+
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+        """See `Method`."""
+        for taken in range(1, steps + 1):
+            self._method.advance(state, time_step)
+            self._dissipation.apply(state.normal_velocity, time_step)
+            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            if self.unsound:
+                return taken
+        return steps
+
+
+class RelaxedSteps:
+    """Steps whose increments are scaled so that they keep total energy, and the clock with them.
+
+    What is left to an event is divided into equal steps, anew after each. Dissipation, if any, follows each step.
+    """
+
+    def __init__(
+        self, method: Method, relaxation: Relaxation, state: State, dissipation: BiharmonicDissipation | None
+    ) -> None:
+        self._method = method
+        self._relaxation = relaxation
+        self._dissipation = dissipation
+        self._after = state.empty_like()
+        self.unsound = 0
+
+    def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
+        """See `Stepper`."""
+        taken = self.unsound = 0
+        while taken < most and time < event and not self.unsound:
+            time = self._step(state, time, event, time_step)
+            taken += 1
+        return time, taken
+
+    def _step(self, state: State, time: float, event: float, time_step: float) -> float:
+        """One step; gives the time after it."""
+        step = equal_step(time, event, time_step)
+        factor = self._try(state, step)
+        following = time + factor * step
+        if step == event - time:
+            factor, step = self._land(state, factor, step)
+            following = event
+        self.unsound = move_along(
+            state.thickness, state.normal_velocity, self._after.thickness, self._after.normal_velocity, factor
+        )
+        if self._dissipation is not None:
+            self._dissipation.apply(state.normal_velocity, factor * step)
+            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+        return following
+
+    def _try(self, state: State, step: float) -> float:
+        """Find the state after a step of `step` seconds, and give the factor of the increment that leads there."""
+        self._after.thickness[:] = state.thickness
+        self._after.normal_velocity[:] = state.normal_velocity
+        self._method.advance(self._after, step)
+        return self._relaxation.factor(state, self._after)
+
+    def _land(self, state: State, factor: float, remaining: float) -> tuple[float, float]:
+        """Find the step whose scaled length is `remaining` seconds by secants; gives its factor and length."""
+        step, excess = remaining, factor * remaining - remaining
+        following = remaining / factor
+        for _ in range(LANDINGS):
+            if abs(excess) <= LANDED * remaining:
+                break
+            before, excess_before, step = step, excess, following
+            factor = self._try(state, step)
+            excess = factor * step - remaining
+            if excess != excess_before:
+                following = step - excess * (step - before) / (excess - excess_before)
+        return factor, step

@@ -1,0 +1,66 @@
+"""Explicit Runge-Kutta methods from a Butcher tableau."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from swe.equations.kernels import add_scaled, count_unsound
+from swe.state import State
+
+Tendency = Callable[[State, State], None]
+"""Writes the time derivative of its first argument into its second."""
+
+
+@dataclass(frozen=True)
+class ButcherTableau:
+    """An explicit method: `stages[i]` weighs the earlier slopes in stage i, `weights` all of them at the end."""
+
+    stages: tuple[tuple[float, ...], ...]
+    weights: tuple[float, ...]
+
+
+RK4 = ButcherTableau(
+    stages=((), (1 / 2,), (0.0, 1 / 2), (0.0, 0.0, 1.0)),
+    weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6),
+)
+"""The classical method of order four."""
+
+
+class RungeKutta:
+    """Advances a state in place with an explicit method; the slopes are allocated once.
+
+    `unsound` is the number of thicknesses that are not positive and of values that are not finite after `advance`.
+    """
+
+    def __init__(self, tendency: Tendency, state: State, tableau: ButcherTableau = RK4) -> None:
+        self.tendency = tendency
+        self.tableau = tableau
+        self.unsound = 0
+        self._stage = state.empty_like()
+        self._slopes = [state.empty_like() for _ in tableau.weights]
+
+    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+        """Take up to `steps` steps, fewer where one leaves `unsound` values; give their number."""
+        for taken in range(1, steps + 1):
+            self.step(state, time_step)
+            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            if self.unsound:
+                return taken
+        return steps
+
+    def step(self, state: State, time_step: float) -> None:
+        """Advance `state` by `time_step` seconds."""
+        for coefficients, slope in zip(self.tableau.stages, self._slopes, strict=True):
+            self.tendency(self._combine(state, time_step, coefficients, self._stage), slope)
+        self._combine(state, time_step, self.tableau.weights, state)
+
+    def _combine(self, state: State, time_step: float, coefficients: tuple[float, ...], result: State) -> State:
+        """Write state + dt sum_i c_i k_i into `result`; give `state` itself where all c_i vanish."""
+        base = state
+        for coefficient, slope in zip(coefficients, self._slopes, strict=False):
+            if coefficient == 0.0:
+                continue
+            factor = time_step * coefficient
+            add_scaled(base.thickness, factor, slope.thickness, result.thickness)
+            add_scaled(base.normal_velocity, factor, slope.normal_velocity, result.normal_velocity)
+            base = result
+        return base

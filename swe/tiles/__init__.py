@@ -1,0 +1,1 @@
+"""Compiled loops over tiles of a mesh, and the Runge-Kutta method fused with them."""

@@ -1,0 +1,313 @@
+"""The mesh cut into tiles of neighbouring cells, each with all that its tendency needs, in local numbers.
+
+A tile owns a run of cells and the edges whose lower cell is among them. To find the tendency at those it computes
+
+- the contributions to its edges of every cell at their two ends: its own cells and a rim of cells after them;
+- the potential vorticity at all vertices of these cells;
+- from the thickness of the cells round those vertices and the velocity at the edges round them, the halo.
+
+Everything a tile reads lies together, in the order in which it is read. Rings of cells are stored side by side of the
+ring (all first sides, all second sides, ...), so that neighbouring cells fill the lanes of a vector; cells with fewer
+than `RING` sides are filled up with sides of no length, those with more have their rings apart, after the others.
+"""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.arrays import Array, Index
+from mesh.triangulation.ordering import hilbert_order, inverse_order
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.equations.kernels import edge_signs_on_cell, edge_signs_on_vertex
+from swe.errors import SetupError
+from swe.tiles.tile_kernels import MIRROR, RING, TileArrays
+
+CELLS_PER_TILE = 2560
+"""Half a megabyte of scratch stays in the second cache, and a tile repeats a tenth of its neighbours' work."""
+
+DISORDER = 1.5
+"""A mesh keeps its own numbering unless it parts this many times more neighbours between tiles than a curve does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tiles:
+    """Tiles of a mesh; `arrays` is what the kernels take.
+
+    `cell_order` and `edge_order` are the cells and edges of the mesh in the order of the tiles, None where that is the
+    order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are the tiles' places in it. `halo` holds the places
+    of the cells and the edges that a tile reads from others; `indices` and `metrics` the tile's local indices and its
+    geometry with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) are the places where the parts
+    begin, and where the last one ends; `_Cutter.cut` gives their order. `most` are the largest numbers of entities.
+    """
+
+    cell_order: Index | None
+    edge_order: Index | None
+    first_cell: Index
+    first_edge: Index
+    halo: Index
+    halo_parts: Index
+    indices: Index
+    index_parts: Index
+    metrics: Array
+    metric_parts: Index
+    most: "LocalSizes"
+
+    @property
+    def arrays(self) -> TileArrays:
+        """What the kernels take."""
+        return (
+            self.first_cell,
+            self.first_edge,
+            self.halo,
+            self.halo_parts,
+            self.indices,
+            self.index_parts,
+            self.metrics,
+            self.metric_parts,
+        )
+
+    @property
+    def n_tiles(self) -> int:
+        """Number of tiles."""
+        return len(self.first_cell) - 1
+
+
+@dataclass(frozen=True)
+class LocalSizes:
+    """Numbers of cells with halo, cells computed, edges with halo, own edges, vertices, and sides of rings."""
+
+    cells: int
+    computed_cells: int
+    edges: int
+    own_edges: int
+    vertices: int
+    sides: int
+
+
+def build_tiles(
+    mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cells_per_tile: int = CELLS_PER_TILE
+) -> Tiles:
+    """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them.
+
+    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `SetupError` where the
+    surroundings of a single cell do not fit.
+    """
+    n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
+    first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
+    cell_order = _cell_order(mesh, first_cell)
+    cell_rank = inverse_order(cell_order)
+    ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
+    edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
+    first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
+    cutter = _Cutter(mesh, topography, coriolis, gravity, cell_rank, inverse_order(edge_order))
+    pieces = [
+        cutter.cut(
+            cell_order[first_cell[tile] : first_cell[tile + 1]], edge_order[first_edge[tile] : first_edge[tile + 1]]
+        )
+        for tile in range(n_tiles)
+    ]
+    most = LocalSizes(*np.max([list(piece.sizes) for piece in pieces], axis=0).tolist())
+    if most.edges > MIRROR:
+        if cells_per_tile == 1:
+            raise SetupError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
+        return build_tiles(mesh, topography, coriolis, gravity, cells_per_tile // 2)
+    halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
+    indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
+    metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
+    return Tiles(
+        cell_order=None if _is_identity(cell_order) else cell_order,
+        edge_order=None if _is_identity(edge_order) else edge_order,
+        first_cell=first_cell,
+        first_edge=first_edge,
+        halo=halo,
+        halo_parts=halo_parts,
+        indices=indices,
+        index_parts=index_parts,
+        metrics=metrics,
+        metric_parts=metric_parts,
+        most=most,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class _Piece:
+    """The arrays of one tile, in the order in which the kernels take them apart; `sizes` are those of `LocalSizes`."""
+
+    halo: list[Index]
+    indices: list[Index]
+    metrics: list[Array]
+    sizes: tuple[int, ...]
+
+
+class _Cutter:
+    """Cuts tiles out of a mesh, one after the other."""
+
+    def __init__(
+        self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cell_rank: Index, edge_rank: Index
+    ) -> None:
+        self.mesh = mesh
+        self.cell_rank, self.edge_rank = cell_rank, edge_rank
+        self.potential = gravity * topography
+        self.planetary = coriolis * mesh.area_triangle
+        self.ratio = mesh.dv_edge / mesh.dc_edge
+        self.outward = edge_signs_on_cell(mesh) > 0.0
+        self.anticlockwise = edge_signs_on_vertex(mesh) > 0.0
+        self.prefix = _area_passed(mesh)
+        self.local_cells = _LocalNumbers(mesh.n_cells)
+        self.local_edges = _LocalNumbers(mesh.n_edges)
+        self.local_vertices = _LocalNumbers(mesh.n_vertices)
+
+    def cut(self, own_cells: Index, own_edges: Index) -> _Piece:
+        """The tile that owns these cells and edges, given by their numbers in the mesh."""
+        mesh, cells, edges, vertices = self.mesh, self.local_cells, self.local_edges, self.local_vertices
+        cells.add(own_cells)
+        edges.add(own_edges)
+        cells.add(mesh.cells_on_edge[own_edges])
+        computed = cells.known()
+        sides = mesh.n_edges_on_cell[computed]
+        inside = np.arange(mesh.max_edges) < sides[:, None]
+        vertices.add(mesh.vertices_on_cell[computed][inside])
+        round_vertices = vertices.known()
+        edges.add(mesh.edges_on_vertex[round_vertices])
+        cells.add(mesh.cells_on_vertex[round_vertices])
+        slots = _slots(sides, mesh.max_edges)
+        larger = np.flatnonzero(sides > RING)
+        corners = vertices.of(mesh.vertices_on_cell[computed])
+        last_corner = corners[np.arange(len(computed)), sides - 1]
+        piece = _Piece(
+            halo=[
+                self.cell_rank[cells.known()[len(own_cells) :]],
+                self.edge_rank[edges.known()[len(own_edges) :]],
+            ],
+            indices=[
+                np.stack([self._slot(own_edges, end, slots) for end in (0, 1)]),
+                _signed(edges.of(mesh.edges_on_vertex[round_vertices]), self.anticlockwise[round_vertices]).T,
+                cells.of(mesh.cells_on_vertex[round_vertices]).T,
+                _ring(_signed(edges.of(mesh.edges_on_cell[computed]), self.outward[computed]), sides, 0),
+                _ring(cells.of(mesh.cells_on_cell[computed]), sides, 0),
+                _ring(corners, sides, last_corner),
+                larger,
+                slots[larger, 0],
+                sides[larger],
+            ],
+            metrics=[
+                mesh.dc_edge[edges.known()],
+                mesh.kite_areas_on_vertex[round_vertices].T,
+                self.planetary[round_vertices],
+                _ring(self.ratio[mesh.edges_on_cell[computed]], sides, 0.0),
+                _ring(self.prefix[computed], sides, 0.0),
+                1.0 / mesh.area_cell[computed],
+                self.potential[computed],
+            ],
+            sizes=(
+                len(cells.known()),
+                len(computed),
+                len(edges.known()),
+                len(own_edges),
+                len(round_vertices),
+                RING * len(computed) + int(sides[larger].sum()),
+            ),
+        )
+        for numbers in (cells, edges, vertices):
+            numbers.forget()
+        return piece
+
+    def _slot(self, edges: Index, end: int, slots: Index) -> Index:
+        """Where the cell at `end` of each edge leaves its contribution."""
+        cell = self.mesh.cells_on_edge[edges, end]
+        side = np.argmax(self.mesh.edges_on_cell[cell] == edges[:, None], axis=1)
+        return slots[self.local_cells.of(cell), side]
+
+
+class _LocalNumbers:
+    """Numbers within a tile of the entities of one kind, given in the order in which they come up."""
+
+    def __init__(self, size: int) -> None:
+        self._number = np.full(size, -1)
+        self._entities: list[Index] = []
+        self._count = 0
+
+    def add(self, entities: Index) -> None:
+        """Number those that have no number yet."""
+        fresh = entities.ravel()[self._number[entities.ravel()] < 0]
+        fresh = fresh[np.sort(np.unique(fresh, return_index=True)[1])]
+        self._number[fresh] = self._count + np.arange(len(fresh))
+        self._entities.append(fresh)
+        self._count += len(fresh)
+
+    def known(self) -> Index:
+        """The entities by their numbers."""
+        return np.concatenate(self._entities)
+
+    def of(self, entities: Index) -> Index:
+        """Numbers of `entities`; anything where they have none."""
+        return self._number[entities]
+
+    def forget(self) -> None:
+        """Start anew."""
+        for entities in self._entities:
+            self._number[entities] = -1
+        self._entities, self._count = [], 0
+
+
+def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
+    """The mesh's own order where it keeps neighbours together, else that along a curve."""
+    own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
+    tile = np.searchsorted(first_cell, own, side="right")
+
+    def parted(order: Index) -> int:
+        ends = tile[inverse_order(order)][mesh.cells_on_edge]
+        return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
+
+    return own if parted(own) <= DISORDER * parted(curve) else curve
+
+
+def _is_identity(order: Index) -> bool:
+    return bool(np.all(order == np.arange(len(order))))
+
+
+def _area_passed(mesh: VoronoiMesh) -> Array:
+    """Fraction (n_cells, max_edges) of the cell's area in its kites from side 0 on before each side."""
+    passed = np.zeros((mesh.n_cells, mesh.max_edges))
+    cell = np.arange(mesh.n_cells)[:, None]
+    for side in range(1, mesh.max_edges):
+        vertex = mesh.vertices_on_cell[:, side - 1]
+        kite = (mesh.kite_areas_on_vertex[vertex] * (mesh.cells_on_vertex[vertex] == cell)).sum(axis=1)
+        passed[:, side] = passed[:, side - 1] + kite / mesh.area_cell
+    return passed
+
+
+def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
+    """Places of U, or of -U where not `positive`."""
+    return np.where(positive, numbers, numbers + MIRROR)
+
+
+def _slots(sides: Index, max_edges: int) -> Index:
+    """Place of every side (n, max_edges) in the ring arrays as `_ring` lays them out."""
+    n = len(sides)
+    larger = np.flatnonzero(sides > RING)
+    slots = np.arange(n)[:, None] + n * np.minimum(np.arange(max_edges), RING - 1)
+    starts = RING * n + np.concatenate([[0], np.cumsum(sides[larger])[:-1]]).astype(np.int64)
+    slots[larger] = starts[: len(larger), None] + np.minimum(np.arange(max_edges), sides[larger, None] - 1)
+    return slots
+
+
+def _ring(values: NDArray[Any], sides: Index, filler: Index | float) -> NDArray[Any]:
+    """Rings (n, max_edges) as the kernels read them: `RING` sides of every cell, then whole rings of larger cells."""
+    inside = np.arange(values.shape[1]) < sides[:, None]
+    ring = np.empty((RING, len(sides)), values.dtype)
+    ring[:] = filler
+    for side in range(min(RING, values.shape[1])):
+        ring[side, inside[:, side]] = values[inside[:, side], side]
+    larger = sides > RING
+    return np.concatenate([ring.ravel(), values[larger][inside[larger]]])
+
+
+def _packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:
+    """All parts of all tiles in one array, and the places where they begin, (n_tiles, parts + 1)."""
+    sizes = np.array([[part.size for part in piece] for piece in pieces])
+    ends = np.cumsum(sizes).reshape(sizes.shape)
+    starts = np.concatenate([ends[:, :1] - sizes[:, :1], ends], axis=1)
+    return np.concatenate([part.ravel() for piece in pieces for part in piece]).astype(dtype), starts

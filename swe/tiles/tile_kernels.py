@@ -1,0 +1,391 @@
+"""Compiled loops over tiles: one stage of the Runge-Kutta method in one pass over the mesh.
+
+A tile computes the tendency of its own cells and edges from local copies of the state, with local indices, and
+repeats what it needs from its neighbours (`swe.tiles.cutting` says what that is and how it is laid out). So q and the
+contributions of cells to edges never leave the cache, tiles of one stage are independent, and which thread takes
+which tile changes nothing.
+
+The equations are those of `swe.equations.tendency`, with three changes of form. Edges carry the circulation U_e = d_e
+u_e, with -U_e mirrored `MIRROR` places on, so that an index picks the sign too. The Coriolis flux is summed by cells in
+its prefix form, O(n) for n sides. Each cell adds its Bernoulli function to what it gives its edges, since
+d_e du_e/dt = (Q + B) of the first cell - (Q + B) of the second.
+
+Indices are unsigned, as signed ones are tested for wrap-around, and slices are taken in functions that the parallel
+loop calls, as the compiler is told that arrays do not overlap only where the loop itself makes no views.
+"""
+
+from contextlib import suppress
+from typing import Any
+
+import numba
+import numpy as np
+from numba import types
+from numba.extending import intrinsic
+
+from mesh.arrays import Array, Index
+
+MIRROR = 12300
+"""Distance of -U from U in scratch, and so the most edges of a tile; whole pages would share sets of the cache."""
+
+RING = 6
+"""Sides that the vectorised loop over cells computes; the few cells with more are done again apart."""
+
+options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+TileArrays = tuple[Index, Index, Index, Index, Index, Index, Array, Index]
+"""See `swe.tiles.cutting.Tiles.arrays`."""
+
+Arrays = tuple[Array, ...]
+
+part_options: dict[str, Any] = {**options, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+inlined = numba.njit(**part_options)
+compiled = numba.njit(parallel=True, cache=True, **options)
+
+
+@inlined
+def _load_cells(h: Array, first: int, owned: int, halo: Index, local: Array) -> None:
+    """Thickness of the tile's own cells and of those round them."""
+    for i in range(owned):
+        local[i] = h[first + i]
+    for i in range(halo.size):
+        local[owned + i] = h[halo[i]]
+
+
+@inlined
+def _load_edges(u: Array, first: int, owned: int, halo: Index, d: Array, U: Array) -> None:
+    """U_e = d_e u_e, and -U_e mirrored."""
+    for i in range(owned):
+        circulation = d[i] * u[first + i]
+        U[i] = circulation
+        U[MIRROR + i] = -circulation
+    for i in range(halo.size):
+        circulation = d[owned + i] * u[halo[i]]
+        U[owned + i] = circulation
+        U[MIRROR + owned + i] = -circulation
+
+
+@inlined
+def _potential_vorticity(
+    U: Array, h: Array, edges: Index, cells: Index, kites: Array, planetary: Array, q: Array
+) -> None:
+    """q_v = (A_v f_v + sum_e t_ev U_e) / sum_i kite_vi h_i."""
+    n = planetary.size
+    for v in range(n):
+        circulation = U[edges[v]] + U[edges[n + v]] + U[edges[2 * n + v]]
+        volume = kites[v] * h[cells[v]] + kites[n + v] * h[cells[n + v]] + kites[2 * n + v] * h[cells[2 * n + v]]
+        q[v] = (planetary[v] + circulation) / volume
+
+
+@inlined
+def _one_cell(
+    i: int,
+    start: int,
+    stride: int,
+    sides: int,
+    gravity: float,
+    h: Array,
+    U: Array,
+    q: Array,
+    edges: Index,
+    cells: Index,
+    vertices: Index,
+    ratio: Array,
+    P: Array,
+    inverse_area: Array,
+    potential: Array,
+    dh: Array,
+    S: Array,
+) -> None:
+    """dh_i/dt, and for every side j the sum S_j of the Bernoulli function B and of the cell's part of Q.
+
+    With G_j the outflow h_e l_e u_e through side j, q_j the mean of its two vertices and P_j the fraction of the area
+    in the kites before side j, counted from the first,
+
+        Q_j = 1/2 sum_k (q_j + q_k) G_k (1/2 + P_j - P_k - [k < j] - [k = j]/2).
+
+    Sums without the factors 1/2 of h_e and q_j are multiplied by them at the end.
+    """
+    outflow = outflow_P = qG = qG_P = energy = 0.0
+    last = q[vertices[start + (sides - 1) * stride]]
+    before = last
+    for j in range(sides):
+        r = start + j * stride
+        U_j = U[edges[r]]
+        normal = ratio[r] * U_j
+        energy += normal * U_j
+        G_j = (h[i] + h[cells[r]]) * normal
+        after = q[vertices[r]]
+        qG_j = (before + after) * G_j
+        before = after
+        outflow += G_j
+        outflow_P += P[r] * G_j
+        qG += qG_j
+        qG_P += P[r] * qG_j
+    dh[i] = -0.5 * outflow * inverse_area[i]
+    B = potential[i] + gravity * h[i] + 0.25 * energy * inverse_area[i]
+    beyond = 0.5 * outflow - outflow_P
+    q_beyond = 0.5 * qG - qG_P
+    before = last
+    for j in range(sides):
+        r = start + j * stride
+        G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
+        after = q[vertices[r]]
+        q_j = before + after
+        before = after
+        beyond -= 0.5 * G_j
+        q_beyond -= 0.5 * (q_j * G_j)
+        S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
+        beyond -= 0.5 * G_j
+        q_beyond -= 0.5 * (q_j * G_j)
+
+
+@inlined
+def _all_cells(
+    gravity: float,
+    h: Array,
+    U: Array,
+    q: Array,
+    edges: Index,
+    cells: Index,
+    vertices: Index,
+    ratio: Array,
+    P: Array,
+    inverse_area: Array,
+    potential: Array,
+    larger: Index,
+    larger_start: Index,
+    larger_sides: Index,
+    dh: Array,
+    S: Array,
+) -> None:
+    """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""
+    n = inverse_area.size
+    for i in range(n):
+        _one_cell(i, i, n, RING, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S)
+    for k in range(larger.size):
+        i, start, sides = larger[k], larger_start[k], larger_sides[k]
+        _one_cell(
+            i, start, 1, sides, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S
+        )
+
+
+@inlined
+def _velocity_tendency(S: Array, slots: Index, d: Array, du: Array) -> None:
+    """du_e/dt = (S of the first cell - S of the second) / d_e at the tile's own edges."""
+    n = du.size
+    for e in range(n):
+        du[e] = (S[slots[e]] - S[slots[n + e]]) / d[e]
+
+
+@inlined
+def _tendency_of_tile(
+    tile: int, thread: int, tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, h: Array, u: Array
+) -> None:
+    """The tendency of the tile's own cells and edges at the state h, u, in the scratch of `thread`."""
+    first_cell, first_edge, halo, halo_parts, indices, index_parts, metrics, metric_parts = tiles
+    h_rows, U_rows, q_rows, S_rows, dh_rows, du_rows = scratch
+    a, b, c = halo_parts[tile], index_parts[tile], metric_parts[tile]  # where the parts begin
+    halo_cells, halo_edges = halo[a[0] : a[1]], halo[a[1] : a[2]]
+    slots = indices[b[0] : b[1]]
+    edges_on_vertex, cells_on_vertex = indices[b[1] : b[2]], indices[b[2] : b[3]]
+    edges, cells, vertices = indices[b[3] : b[4]], indices[b[4] : b[5]], indices[b[5] : b[6]]
+    larger, larger_start, larger_sides = indices[b[6] : b[7]], indices[b[7] : b[8]], indices[b[8] : b[9]]
+    d, kites, planetary = metrics[c[0] : c[1]], metrics[c[1] : c[2]], metrics[c[2] : c[3]]
+    ratio, P = metrics[c[3] : c[4]], metrics[c[4] : c[5]]
+    inverse_area, potential = metrics[c[5] : c[6]], metrics[c[6] : c[7]]
+    own_cells, own_edges = first_cell[tile + 1] - first_cell[tile], first_edge[tile + 1] - first_edge[tile]
+
+    local, U, q, S, dh = h_rows[thread], U_rows[thread], q_rows[thread], S_rows[thread], dh_rows[thread]
+    du = du_rows[thread, :own_edges]
+    _load_cells(h, first_cell[tile], own_cells, halo_cells, local)
+    _load_edges(u, first_edge[tile], own_edges, halo_edges, d, U)
+    if moving:
+        _potential_vorticity(U, local, edges_on_vertex, cells_on_vertex, kites, planetary, q)
+    else:
+        q[:] = 0.0
+    _all_cells(
+        gravity,
+        local,
+        U,
+        q,
+        edges,
+        cells,
+        vertices,
+        ratio,
+        P,
+        inverse_area,
+        potential,
+        larger,
+        larger_start,
+        larger_sides,
+        dh,
+        S,
+    )
+    if moving:
+        _velocity_tendency(S, slots, d, du)
+    else:
+        du[:] = 0.0
+
+
+@inlined
+def _add_scaled(first: int, last: int, y: Array, factor: float, slope: Array, result: Array) -> None:
+    """Result = y + factor slope on the tile's own entities."""
+    for i in range(last - first):
+        result[first + i] = y[first + i] + factor * slope[i]
+
+
+@inlined
+def _add_weighted_slopes(
+    first: int, last: int, y: Array, second: Array, third: Array, fourth: Array, time_step: float, slope: Array
+) -> None:
+    """Add dt (k_1 + 2 k_2 + 2 k_3 + k_4)/6 to y in place, where dt k_1 = 2 (second - y), ..., dt k_3 = fourth - y.
+
+    So the states of the stages stand for their slopes, which need not be kept.
+    """
+    for i in range(last - first):
+        start = y[first + i]
+        slopes = (second[first + i] - start) + 2.0 * (third[first + i] - start) + (fourth[first + i] - start)
+        y[first + i] = start + (slopes / 3.0 + time_step / 6.0 * slope[i])
+
+
+@inlined
+def _count_unsound(first: int, last: int, values: Array, least: float) -> int:
+    """Number of values that are not above `least` or not finite."""
+    count = 0
+    for i in range(first, last):
+        if not (least < values[i] < np.inf):
+            count += 1
+    return count
+
+
+@inlined
+def _stage_of_tile(
+    tile: int,
+    thread: int,
+    tiles: TileArrays,
+    scratch: Arrays,
+    gravity: float,
+    moving: bool,
+    y: Arrays,
+    at: Arrays,
+    second: Arrays,
+    third: Arrays,
+    result: Arrays,
+    time_step: float,
+    weight: float,
+    unsound: Index,
+) -> None:
+    """Tendency and update of one tile; see `stage`."""
+    _tendency_of_tile(tile, thread, tiles, scratch, gravity, moving, at[0], at[1])
+    dh, du = scratch[4][thread], scratch[5][thread]
+    cell, next_cell, edge, next_edge = tiles[0][tile], tiles[0][tile + 1], tiles[1][tile], tiles[1][tile + 1]
+    if weight == 0.0:
+        _add_weighted_slopes(cell, next_cell, y[0], second[0], third[0], at[0], time_step, dh)
+        _add_weighted_slopes(edge, next_edge, y[1], second[1], third[1], at[1], time_step, du)
+        unsound[tile] = _count_unsound(cell, next_cell, y[0], 0.0) + _count_unsound(edge, next_edge, y[1], -np.inf)
+    else:
+        _add_scaled(cell, next_cell, y[0], weight * time_step, dh, result[0])
+        _add_scaled(edge, next_edge, y[1], weight * time_step, du, result[1])
+
+
+@intrinsic
+def _prefer_widest_vectors(_typing_context: Any) -> Any:
+    """Let the loop that calls this use vectors of 512 bits where the processor has them.
+
+    The compiler prefers 256 bits even there, to spare the clock of older processors, and is a seventh slower.
+    The attribute is not among those that llvmlite knows by name, so it is added to the set beneath; where that ceases
+    to work, the loop is as fast as without.
+    """
+
+    def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        with suppress(AttributeError, TypeError):
+            set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), add_attribute
+
+
+def _nothing() -> None:
+    """What takes its place where loops are run as Python."""
+
+
+use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_vectors  # type: ignore[attr-defined]
+
+
+@compiled
+def stage(
+    tiles: TileArrays,
+    scratch: Arrays,
+    gravity: float,
+    moving: bool,
+    y: Arrays,
+    at: Arrays,
+    second: Arrays,
+    third: Arrays,
+    result: Arrays,
+    time_step: float,
+    weight: float,
+    unsound: Index,
+) -> None:
+    """One stage of a step from y, with the slope k at the state `at`.
+
+    A stage before the last writes y + weight dt k into `result`; the last one, of weight 0, replaces y by the state
+    after the step, leaves `result` alone and counts unsound values.
+    """
+    for tile in numba.prange(unsound.size):
+        use_widest_vectors()  # type: ignore[call-arg]
+        _stage_of_tile(
+            tile,
+            numba.get_thread_id(),
+            tiles,
+            scratch,
+            gravity,
+            moving,
+            y,
+            at,
+            second,
+            third,
+            result,
+            time_step,
+            weight,
+            unsound,
+        )
+
+
+@numba.njit(cache=True, **options)
+def tendency(
+    tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, at: Arrays, slope: Arrays, unsound: Index
+) -> None:
+    """Write the slope at the state `at` into `slope`, which is zero, both in the order of the tiles."""
+    stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
+
+
+@numba.njit(cache=True, **options)
+def rk4_steps(
+    tiles: TileArrays,
+    scratch: Arrays,
+    gravity: float,
+    moving: bool,
+    y: Arrays,
+    second: Arrays,
+    third: Arrays,
+    fourth: Arrays,
+    time_step: float,
+    count: int,
+    unsound: Index,
+) -> int:
+    """Advance y, a pair of thickness and normal velocity in the order of the tiles, by steps of classical RK4.
+
+    Gives the number of steps taken: `count`, or less where a step left unsound values, thicknesses that are not
+    positive or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
+    `fourth` are left with the states at which the stages after the first took their slopes. Where not `moving`, the
+    velocity stays as it is.
+    """
+    dt = time_step
+    for taken in range(1, count + 1):
+        stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, unsound)
+        stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, unsound)
+        stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, unsound)
+        stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, unsound)
+        if np.any(unsound > 0):
+            return taken
+    return count

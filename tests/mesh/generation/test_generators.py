@@ -1,0 +1,46 @@
+import numpy as np
+import pytest
+
+from mesh import MeshError
+from mesh.generation.generators import icosahedral_level, icosahedral_points, starting_points
+from mesh.geometry.sphere import fibonacci_points
+
+
+@pytest.mark.parametrize("level", [0, 1, 2, 3])
+def test_bisection_gives_unit_points_in_the_known_number(level: int) -> None:
+    points = icosahedral_points(level)
+    assert len(points) == 10 * 4**level + 2
+    assert icosahedral_level(len(points)) == level
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, rtol=1e-15)
+    np.testing.assert_allclose(points.sum(axis=0), 0.0, atol=1e-12)
+
+
+def test_each_level_keeps_the_points_of_the_one_before() -> None:
+    coarse, fine = icosahedral_points(1), icosahedral_points(2)
+    np.testing.assert_array_equal(fine[: len(coarse)], coarse)
+
+
+def test_fibonacci_points_are_spread_evenly() -> None:
+    points = fibonacci_points(1000)
+    cosines = points @ points.T - 2 * np.eye(1000)
+    nearest = np.arccos(cosines.max(axis=1))
+    assert nearest.max() / nearest.min() < 1.6
+
+
+def test_default_start_follows_the_number() -> None:
+    np.testing.assert_array_equal(starting_points(162), icosahedral_points(2))
+    np.testing.assert_array_equal(starting_points(163), fibonacci_points(163))
+
+
+@pytest.mark.parametrize(
+    ("cells", "start", "words"),
+    [
+        (11, None, "11 cells is too small"),
+        (-3, None, "too small"),
+        (100, "icosahedral", "choose 42 or 162"),
+        (100, "cubed", "no start named 'cubed'"),
+    ],
+)
+def test_wrong_requests_say_what_to_do(cells: int, start: str | None, words: str) -> None:
+    with pytest.raises(MeshError, match=words):
+        starting_points(cells, start)

@@ -1,0 +1,106 @@
+import numpy as np
+import pytest
+
+from mesh import mesh_from_points, mesh_quality
+from mesh.density.named import NAMED
+from mesh.discrete.quality import triangle_quality
+from mesh.generation.optimizer import Limits, ScvtResult
+from mesh.generation.reseed import SHAKEN_RINGS, reseed
+from mesh.generation.scvt import Request, generate_scvt, optimize
+from mesh.generation.well_centered import GOAL, _penalty, well_center
+from mesh.triangulation.delaunay import delaunay
+from mesh.triangulation.ordering import sort_triangles
+from mesh.triangulation.triangle_quality import near_bad_triangles, qualities
+
+CIRCLE = NAMED["refined-circle"]
+
+
+@pytest.fixture(scope="module")
+def circle() -> ScvtResult:
+    return generate_scvt(Request(2562, "random-root", density=CIRCLE, seed=1), Limits(1e-5))
+
+
+def test_compiled_quality_is_that_of_the_mesh(circle: ScvtResult) -> None:
+    mesh = mesh_from_points(circle.points, circle.triangles)
+    np.testing.assert_allclose(qualities(mesh.cell_points, mesh.cells_on_vertex), triangle_quality(mesh), rtol=1e-12)
+
+
+def test_penalty_has_the_gradient_it_says(circle: ScvtResult) -> None:
+    points, triangles, goal = circle.points.copy(), circle.triangles, 0.95
+    gradient = np.zeros_like(points)
+    value = _penalty(points, triangles, goal, gradient)
+    direction = np.random.default_rng(0).normal(size=points.shape)
+    step = 1e-7
+    ahead, behind = (
+        _penalty(points + sign * step * direction, triangles, goal, np.zeros_like(points)) for sign in (1, -1)
+    )
+    assert (ahead - behind) / (2 * step) == pytest.approx(np.sum(gradient * direction), rel=1e-4)
+    assert value > 0.0
+
+
+def test_no_obtuse_triangle_is_left(circle: ScvtResult) -> None:
+    before = mesh_quality(mesh_from_points(circle.points, circle.triangles, CIRCLE, "refined-circle"))
+    better = well_center(circle.points, circle.triangles, CIRCLE)
+    after = mesh_quality(mesh_from_points(better.points, better.triangles, CIRCLE, "refined-circle"))
+    assert before.obtuse > 0
+    assert before.q_min < 0.83
+    assert after.obtuse == 0
+    assert after.q_min == pytest.approx(better.least_quality)
+    assert after.q_min >= GOAL
+    assert better.residual_before == pytest.approx(before.residual, rel=1e-6)
+    assert better.residual == pytest.approx(after.residual, rel=1e-6)
+    assert better.residual < 0.1
+    np.testing.assert_array_equal(sort_triangles(better.triangles), sort_triangles(delaunay(better.points)))
+
+
+def test_most_generators_stay(circle: ScvtResult) -> None:
+    better = well_center(circle.points, circle.triangles, CIRCLE)
+    moved = (better.points != circle.points).any(axis=1)
+    assert 0.0 < moved.mean() < 0.6
+
+
+def test_good_meshes_are_left_alone() -> None:
+    result = generate_scvt(Request(642))
+    better = well_center(result.points, result.triangles)
+    np.testing.assert_array_equal(better.points, result.points)
+    assert better.residual == better.residual_before
+
+
+def test_bad_surroundings_grow_by_rings(circle: ScvtResult) -> None:
+    counts = [near_bad_triangles(circle.points, circle.triangles, 0.8, rings).sum() for rings in (0, 1, 2, 50)]
+    assert 0 < counts[0] < counts[1] < counts[2] < counts[3] == 2562
+
+
+def test_reseeding_never_makes_the_mesh_worse() -> None:
+    start = optimize(np.ascontiguousarray(generate_scvt(Request(300, "random", seed=2), Limits(1e-5)).points))
+    fixed = np.zeros(300, bool)
+
+    def converge(points: np.ndarray) -> ScvtResult:
+        return optimize(points, limits=Limits(1e-5))
+
+    better = reseed(start, converge, wanted=0.95, tries=4, seed=0, fixed=fixed)
+    lacking = [np.maximum(0, 0.95 - qualities(r.points, r.triangles)).sum() for r in (start, better)]
+    assert lacking[1] < lacking[0]
+    assert better.history.residual[-1] <= 1e-5
+
+
+def test_no_round_begins_without_time(circle: ScvtResult) -> None:
+    late = well_center(circle.points, circle.triangles, CIRCLE, seconds=0.0)
+    assert late.least_quality < GOAL
+    assert late.residual == late.residual_before
+    np.testing.assert_array_equal(late.points, circle.points)
+
+
+def test_only_generators_near_bad_triangles_are_shaken() -> None:
+    start = generate_scvt(Request(300, "random", seed=2), Limits(1e-4))
+    fixed = np.arange(300) % 7 == 0
+    near = near_bad_triangles(start.points, start.triangles, 0.9, SHAKEN_RINGS) & ~fixed
+    assert 0 < near.sum() < (~fixed).sum()
+    asked: list[np.ndarray] = []
+
+    def converge(points: np.ndarray) -> ScvtResult:
+        asked.append((points != start.points).any(axis=1))
+        return start
+
+    reseed(start, converge, wanted=0.9, tries=1, seed=0, fixed=fixed)
+    np.testing.assert_array_equal(asked, [near])

@@ -1,0 +1,51 @@
+"""Run directories: what is read of them, and how damaged ones are refused."""
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cases import Williamson2
+from mesh import MeshError, scvt_mesh
+from postprocess.runs.reading import read_run
+from swe import Simulation
+from swe.errors import SetupError
+
+
+@pytest.fixture
+def directory(tmp_path: Path) -> Path:
+    Simulation(scvt_mesh(42), Williamson2(), tmp_path / "run", time_step=1800.0).run(0.25, progress=False)
+    return tmp_path / "run"
+
+
+def test_time_step_and_number_of_steps(directory: Path) -> None:
+    run = read_run(directory)
+    assert (run.time_step, run.steps) == (1800.0, 12)
+
+
+@pytest.mark.parametrize("content", [b"\x89HDF\xff\xfe", b"[]", b"3", b"{}", b'{"parameters": []}', b"{", b""])
+def test_record_that_is_none_is_refused(directory: Path, content: bytes) -> None:
+    (directory / "run.json").write_bytes(content)
+    with pytest.raises(SetupError, match=r"run holds no readable run .*; name a directory that a run wrote"):
+        read_run(directory)
+
+
+def test_record_without_numbers_is_refused(directory: Path) -> None:
+    record = json.loads((directory / "run.json").read_text())
+    (directory / "run.json").write_text(json.dumps({**record, "steps": "many"}))
+    with pytest.raises(SetupError, match="holds no readable run"):
+        read_run(directory)
+
+
+def test_mesh_of_another_run_is_refused(directory: Path, tmp_path: Path) -> None:
+    Simulation(scvt_mesh(162), Williamson2(), tmp_path / "other").run(0.25, progress=False)
+    shutil.copy(tmp_path / "other" / "mesh.nc", directory / "mesh.nc")
+    with pytest.raises(SetupError, match=r"history\.nc has 42 values of thickness, but mesh\.nc beside it needs 162;"):
+        read_run(directory)
+
+
+def test_mesh_that_is_none_is_told_as_such(directory: Path) -> None:
+    (directory / "mesh.nc").write_text("nothing")
+    with pytest.raises(MeshError, match=r"mesh\.nc: not a readable NetCDF file"):
+        read_run(directory)

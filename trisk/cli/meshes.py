@@ -1,0 +1,39 @@
+"""The mesh that a command runs on: one that is read, or one that is generated for it."""
+
+from pathlib import Path
+
+import typer
+
+from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh
+from mesh.generation.pipeline import UNIFORM_TOLERANCE
+from swe.output.files import MESH_FILE
+from trisk.cli.report import convergence_bar
+
+
+def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bool, quiet: bool) -> VoronoiMesh:
+    """The mesh of `mesh_file`, or one of `cells` generated with a bar of progress unless `quiet`.
+
+    Raises `typer.BadParameter` where neither is given, or both.
+    """
+    if mesh_file is not None and cells is None:
+        return read_mesh(mesh_file, recompute_metrics)
+    if cells is None or mesh_file is not None:
+        raise typer.BadParameter("give either --mesh FILE or --cells N")
+    if recompute_metrics:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
+    with convergence_bar(UNIFORM_TOLERANCE, not quiet) as show:
+        return scvt_mesh(cells, callback=show)
+
+
+def mesh_of_run(directory: Path, cells: int | None) -> VoronoiMesh | None:
+    """The mesh of a run that the directory holds, None where there is none; so a run can go on without being told it.
+
+    Raises `MeshError` where it has another number of cells than `cells`, if that is given.
+    """
+    path = directory / MESH_FILE
+    if not path.is_file():
+        return None
+    mesh = read_mesh(path)
+    if cells is not None and cells != mesh.n_cells:
+        raise MeshError(f"{path} has {mesh.n_cells} cells, not {cells}; give the same options, or another directory")
+    return mesh

@@ -1,0 +1,97 @@
+"""`trisk study`: what meshes and time steps do to solutions."""
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trisk.cli.options import CaseName, Quiet, Recompute, Settings
+
+app = typer.Typer(help="Study how meshes or time steps become errors. An interrupted study goes on.")
+
+Output = Annotated[Path, typer.Option("--output", "-o", help="Folder of the study, new or begun before.")]
+
+
+@app.command()
+def mesh(
+    case: CaseName,
+    output: Output,
+    families: Annotated[
+        list[str] | None, typer.Option("--family", help="Family of meshes, repeatable; by default all.")
+    ] = None,
+    cells: Annotated[
+        list[int] | None,
+        typer.Option("--cells", help="Number of cells, 10*4^k+2, repeatable; by default 642, 2562, 10242."),
+    ] = None,
+    days: Annotated[float | None, typer.Option("--days", help="Simulated days; by default those of the paper.")] = None,
+    error_day: Annotated[
+        float | None, typer.Option("--error-day", help="Day on which errors are taken; by default the last.")
+    ] = None,
+    settings: Settings = None,
+    quiet: Quiet = False,
+) -> None:
+    """Run a case over families and sizes of meshes.
+
+    Sets the quality of the meshes beside solution error and conservation.
+    """
+    from cases import find_case
+    from cases.parameters import split_settings
+    from postprocess.studies.families import FAMILIES
+    from postprocess.studies.mesh_study import Plan, carry_out
+    from postprocess.studies.study_report import write_mesh_report
+
+    chosen = find_case(case, split_settings(settings or ()))
+    days = chosen.recommended_days if days is None else days
+    plan = Plan(
+        output,
+        chosen,
+        days,
+        days if error_day is None else error_day,
+        tuple(families or FAMILIES),
+        tuple(cells or (642, 2562, 10242)),
+    )
+    tell = _teller(quiet)
+    finest, rows = carry_out(plan, not quiet, tell)
+    tell(str(write_mesh_report(plan, finest, rows, ["trisk", *sys.argv[1:]])))
+
+
+@app.command()
+def time(
+    case: CaseName,
+    output: Output,
+    time_steps: Annotated[list[float], typer.Option("--dt", help="Time step in seconds; give several.")],
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
+    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
+    days: Annotated[float | None, typer.Option("--days", help="Simulated days; by default those of the paper.")] = None,
+    settings: Settings = None,
+    recompute_metrics: Recompute = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a case with several time steps.
+
+    Tells the energy drift and the error of the time stepping.
+    """
+    from cases import find_case
+    from cases.parameters import split_settings
+    from postprocess.studies.study_report import write_time_report
+    from postprocess.studies.time_study import TimePlan, carry_out
+    from trisk.cli.meshes import chosen_mesh
+
+    chosen = find_case(case, split_settings(settings or ()))
+    used = chosen_mesh(mesh_file, cells, recompute_metrics, quiet)
+    plan = TimePlan(output, chosen, used, chosen.recommended_days if days is None else days, tuple(time_steps))
+    tell = _teller(quiet)
+    rows = carry_out(plan, not quiet, tell)
+    tell(str(write_time_report(plan, rows, ["trisk", *sys.argv[1:]])))
+
+
+def _teller(quiet: bool) -> Callable[[str], None]:
+    """What prints a line, unless `quiet`."""
+
+    def tell(line: str) -> None:
+        if not quiet:
+            typer.echo(line)
+
+    return tell
