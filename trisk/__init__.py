@@ -1,1 +1,29 @@
-"""The command line: parsing and calling, no numerics."""
+"""The public names of all packages, brought when they are asked for, so that `import trisk` is quick."""
+
+import importlib
+from typing import Any
+
+_PLACES = {
+    "mesh": (
+        *("MeshError", "MeshWarning", "Operators", "Quality", "VoronoiMesh", "build_operators", "mesh_from_points"),
+        *("mesh_quality", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+    ),
+    "swe": ("RunError", "ShallowWaterModel", "Simulation", "State"),
+    "cases": (
+        *("CASES", "Case", "Galewsky", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5", "Williamson6"),
+        "find_case",
+    ),
+}
+_PACKAGE_OF = {name: package for package, names in _PLACES.items() for name in names}
+
+__all__ = sorted(_PACKAGE_OF)
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _PACKAGE_OF:
+        raise AttributeError(f"module 'trisk' has no attribute {name!r}; it has {', '.join(__all__)}")
+    return getattr(importlib.import_module(_PACKAGE_OF[name]), name)
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

@@ -1,0 +1,45 @@
+"""The Python of README runs as it stands."""
+
+import importlib.util
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+README = Path(__file__).parents[2] / "README.md"
+BLOCK = re.compile(r"(?:^    .*\n|^\n(?=    ))+", re.MULTILINE)
+
+
+def programs() -> list[str]:
+    """Indented blocks that begin with an import."""
+    blocks = (re.sub("^    ", "", block, flags=re.MULTILINE).strip() for block in BLOCK.findall(README.read_text()))
+    return [block for block in blocks if block.startswith(("import ", "from "))]
+
+
+def test_programs_are_found_and_the_first_has_six_lines() -> None:
+    first, *others = programs()
+    assert first.startswith("import trisk\n")
+    assert len([line for line in first.splitlines() if line.strip()]) == 6
+    assert others
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where the first program ran, so that the others find its run."""
+    where = tmp_path_factory.mktemp("readme")
+    done = subprocess.run([sys.executable, "-c", programs()[0]], cwd=where, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.startswith("Invariants(mass=")
+    return where
+
+
+@pytest.mark.parametrize("number", range(1, len(programs())))
+def test_the_other_programs_run(folder: Path, number: int) -> None:
+    program = programs()[number]
+    for name in re.findall(r"^import (\w+)", program, flags=re.MULTILINE):
+        if importlib.util.find_spec(name) is None:
+            pytest.skip(f"{name} is not installed")
+    done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
