@@ -92,7 +92,7 @@ class Metrics:
     weights_on_edge: Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class VoronoiMesh(Metrics, Topology):
     """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
 
@@ -106,6 +106,14 @@ class VoronoiMesh(Metrics, Topology):
     density_name: str = ""
     density_source: str = ""
     fixed_cells: NDArray[np.bool_] | None = None
+
+    def __repr__(self) -> str:
+        sphere = "the unit sphere" if self.sphere_radius == 1.0 else f"a sphere of radius {self.sphere_radius:g} m"
+        density = f", density {self.density_name}" if self.density_name else ""
+        return (
+            f"<VoronoiMesh of {self.n_cells} cells, {self.n_edges} edges and {self.n_vertices} vertices on "
+            f"{sphere}{density}>"
+        )
 
     @property
     def cell_points(self) -> Array:

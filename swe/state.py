@@ -7,7 +7,7 @@ import numpy as np
 from mesh.arrays import Array
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class State:
     """`thickness` at cells (n_cells,), m, and `normal_velocity` at edges (n_edges,), m/s.
 
@@ -17,6 +17,13 @@ class State:
 
     thickness: Array
     normal_velocity: Array
+
+    def __repr__(self) -> str:
+        h, u = self.thickness, self.normal_velocity
+        return (
+            f"<State of {h.size} cells and {u.size} edges: thickness {h.min():g} to {h.max():g} m, normal velocity up "
+            f"to {np.abs(u).max():g} m/s>"
+        )
 
     def copy(self) -> "State":
         """An independent copy."""

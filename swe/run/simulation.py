@@ -184,6 +184,13 @@ class Simulation:
             self.set_back_to(reached.state, reached.time, reached.steps)
         return_freed_memory()
 
+    def __repr__(self) -> str:
+        place = "" if self.recorder is None else f", written to {self.recorder.directory}"
+        return (
+            f"<Simulation of {self.case.name} on {self.mesh.n_cells} cells: day {self.time / SECONDS_PER_DAY:g}, "
+            f"{self.steps} steps, time step {self.configuration.time_step:g} s{place}>"
+        )
+
     def _initial_state(self, sampling: Sampling) -> State:
         """The state at time zero; raises `SetupError` where it is not sound."""
         case, mesh = self.case, self.mesh

@@ -220,3 +220,17 @@ def test_a_state_of_another_mesh_is_refused(small_mesh: VoronoiMesh, fields, wor
 
     with pytest.raises(SetupError, match=words):
         Simulation(small_mesh, Wrong())
+
+
+def test_objects_show_themselves_in_a_line(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    assert repr(small_mesh) == (
+        "<VoronoiMesh of 162 cells, 480 edges and 320 vertices on the unit sphere, density uniform>"
+    )
+    assert repr(small_mesh.scaled(6371220.0)).endswith("on a sphere of radius 6.37122e+06 m, density uniform>")
+    simulation = Simulation(small_mesh, Williamson2(), tmp_path / "run", time_step=1800.0)
+    words = "<Simulation of williamson2 on 162 cells: day 0, 0 steps, time step 1800 s, written to "
+    assert repr(simulation) == f"{words}{tmp_path}/run>"
+    simulation.run(days=0.5, progress=False)
+    assert "day 0.5, 24 steps" in repr(simulation)
+    state = State(np.linspace(50.0, 200.0, 162), np.linspace(-7.0, 3.0, 480))
+    assert repr(state) == ("<State of 162 cells and 480 edges: thickness 50 to 200 m, normal velocity up to 7 m/s>")
