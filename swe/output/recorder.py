@@ -51,14 +51,17 @@ from swe.stepping.time_stepping import Tendency
 
 @dataclass(frozen=True, eq=False)
 class RunDescription:
-    """What is written of a run that does not change in its course, and what its diagnostics are made with."""
+    """What is written of a run that does not change in its course, and what its diagnostics are made with.
+
+    `start_hash` is what the function of that name gives, taken before the first step, as states change in place.
+    """
 
     case_name: str
     parameters: dict[str, float]
     configuration: Configuration
     model: ShallowWaterModel
     dissipation: BiharmonicDissipation | None
-    initial_state: State
+    start_hash: str
     initial_invariants: Invariants
 
     @property
@@ -324,14 +327,14 @@ def _description(run: RunDescription) -> dict[str, object]:
         "case": run.case_name,
         "parameters": as_recorded,
         "configuration": asdict(run.configuration),
-        "start_hash": _start_hash(run),
+        "start_hash": run.start_hash,
     }
 
 
-def _start_hash(run: RunDescription) -> str:
-    """SHA-256, in hexadecimal, of the initial state, the topography and the Coriolis parameter."""
-    digest = hashlib.sha256(np.float64(run.model.gravity).tobytes())
-    for values in (*vars(run.initial_state).values(), run.model.topography, run.model.coriolis):
+def start_hash(model: ShallowWaterModel, state: State) -> str:
+    """SHA-256, in hexadecimal, of the initial `state`, the topography and the Coriolis parameter."""
+    digest = hashlib.sha256(np.float64(model.gravity).tobytes())
+    for values in (*vars(state).values(), model.topography, model.coriolis):
         digest.update(np.ascontiguousarray(values).tobytes())
     return digest.hexdigest()
 

@@ -25,7 +25,7 @@ from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, check_field
 from swe.equations.soundness import has_negative_kites, problem_at_vertices, problem_with_state, warning_of_vertices
 from swe.errors import RunError, RunStopped, SetupError, SetupWarning
-from swe.output.recorder import Moment, Recorder, RunDescription
+from swe.output.recorder import Moment, Recorder, RunDescription, start_hash
 from swe.run.memory import return_freed_memory
 from swe.run.progress import ProgressBar
 from swe.run.signals import StopRequest, stop_requests
@@ -317,7 +317,7 @@ class Simulation:
             self.configuration,
             self.model,
             self.dissipation,
-            self.state,
+            start_hash(self.model, self.state),
             self.initial_invariants,
         )
 

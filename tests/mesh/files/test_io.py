@@ -209,19 +209,20 @@ def test_what_no_step_depends_on_is_replaced(mesh_file: Path) -> None:
     assert_same_arrays(warned_of(mesh_file, words), original, 1e-15)
 
 
-def in_single_precision(source: Path, target: Path) -> Path:
+def in_types(source: Path, target: Path, **types: str) -> Path:
+    """Copy a mesh file with other types for its kinds of numbers, as `f="f4"` or `i="i8"`."""
     with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w") as new:
         new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
         for name, dimension in old.dimensions.items():
             new.createDimension(name, len(dimension))
         for name, variable in old.variables.items():
-            kind = "f4" if variable.dtype.kind == "f" else variable.dtype
+            kind = types.get(variable.dtype.kind, variable.dtype)
             new.createVariable(name, kind, variable.dimensions)[:] = variable[:]
     return target
 
 
 def test_single_precision_is_taken_at_its_generators(mesh_file: Path, tmp_path: Path) -> None:
-    single = in_single_precision(mesh_file, tmp_path / "single.nc")
+    single = in_types(mesh_file, tmp_path / "single.nc", f="f4")
     mesh = warned_of(single, "single.nc: coordinates are in single precision, so that all metrics are taken from them$")
     original = read_mesh(mesh_file)
     np.testing.assert_allclose(mesh.area_cell, original.area_cell, rtol=1e-5)
@@ -230,7 +231,7 @@ def test_single_precision_is_taken_at_its_generators(mesh_file: Path, tmp_path: 
 
 
 def test_a_damaged_generator_in_single_precision_is_refused(mesh_file: Path, tmp_path: Path) -> None:
-    single = in_single_precision(mesh_file, tmp_path / "single.nc")
+    single = in_types(mesh_file, tmp_path / "single.nc", f="f4")
     x = np.abs(read_mesh(mesh_file).x_cell)
     cell = int(np.argmin(np.where(x > 1e-3, x, 1.0)))
     with netCDF4.Dataset(single, "r+") as file:
@@ -369,14 +370,7 @@ def test_community_mesh_is_read_with_a_warning(tmp_path: Path) -> None:
 @pytest.mark.parametrize("index", [2**32 + 7, -(2**32) + 7, 2**40, -9])
 def test_wide_integers_are_not_cut_to_narrow_ones(mesh_file: Path, tmp_path: Path, index: int) -> None:
     """2**32 + 7 in 32 bits is 7, a cell that exists."""
-    wide = tmp_path / "wide.nc"
-    with netCDF4.Dataset(mesh_file) as old, netCDF4.Dataset(wide, "w") as new:
-        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
-        for name, dimension in old.dimensions.items():
-            new.createDimension(name, len(dimension))
-        for name, variable in old.variables.items():
-            new.createVariable(name, "i8" if variable.dtype.kind == "i" else variable.dtype, variable.dimensions)
-            new[name][:] = variable[:]
+    wide = in_types(mesh_file, tmp_path / "wide.nc", i="i8")
     assert_same_arrays(read_mesh(wide), read_mesh(mesh_file), 0.0)
     with netCDF4.Dataset(wide, "r+") as file:
         file["cellsOnEdge"][11, 0] = index
