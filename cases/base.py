@@ -16,7 +16,7 @@ from mesh.integrals.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.plain import plain, plain_number
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.state import State
 
 SMALLEST, LARGEST = 1e-6, 1e12
@@ -73,31 +73,31 @@ class Case(ABC):
         for field in fields(self):
             value = plain(getattr(self, field.name))
             if isinstance(field.default, float):
-                value = plain_number(field.name, value, SetupError)
+                value = plain_number(field.name, value, InputError)
             object.__setattr__(self, field.name, value)
         for name, value in self.parameters().items():
             if isinstance(value, float) and not math.isfinite(value):
-                raise SetupError(f"{name} is {value}; give a finite number")
+                raise InputError(f"{name} is {value}; give a finite number")
         self.require_positive("radius", "gravity")
         for name in ("radius", "gravity"):
             if not SMALLEST < self.parameters()[name] < LARGEST:
-                raise SetupError(
+                raise InputError(
                     f"{name} is {self.parameters()[name]:g}; it must be between {SMALLEST:g} and {LARGEST:g}"
                 )
 
     def require_positive(self, *names: str) -> None:
-        """Raise `SetupError` where one of these parameters is not positive."""
+        """Raise `InputError` where one of these parameters is not positive."""
         for name in names:
             value = self.parameters()[name]
             if value <= 0.0:
-                raise SetupError(f"{name} is {value:g}; it must be positive")
+                raise InputError(f"{name} is {value:g}; it must be positive")
 
     def require_angles(self, *names: str) -> None:
-        """Raise `SetupError` where one of these parameters is no angle that one would give in radians."""
+        """Raise `InputError` where one of these parameters is no angle that one would give in radians."""
         for name in names:
             value = self.parameters()[name]
             if abs(value) > LARGEST_ANGLE:
-                raise SetupError(f"{name} is {value:g}; it is in radians, and must be between -4 pi and 4 pi")
+                raise InputError(f"{name} is {value:g}; it is in radians, and must be between -4 pi and 4 pi")
 
     @property
     def has_exact_solution(self) -> bool:
@@ -138,11 +138,11 @@ class Case(ABC):
         """State at `time` seconds on `mesh`: thickness at the cells, normal velocity from the streamfunction.
 
         Thickness is that of the centres, or the mean over each cell where `sampling` is "mean". The streamfunction
-        is taken at vertices, so that the velocity has no discrete divergence. Raises `SetupError` where the mesh has
+        is taken at vertices, so that the velocity has no discrete divergence. Raises `InputError` where the mesh has
         another radius than the case.
         """
         if not math.isclose(mesh.sphere_radius, self.radius, rel_tol=RADIUS_TOLERANCE):
-            raise SetupError(
+            raise InputError(
                 f"the mesh has a radius of {mesh.sphere_radius:.10g} m, but {self.name} one of {self.radius:.10g} m; "
                 f"scale the mesh first, mesh.scaled({self.radius:.10g})"
             )
@@ -169,7 +169,7 @@ class Case(ABC):
         return asdict(self)
 
     def evaluated(self, function: Callable[..., Array], *time: float) -> SphereFunction:
-        """`function` of this case as one of longitude and latitude; raises `SetupError` where it fails."""
+        """`function` of this case as one of longitude and latitude; raises `InputError` where it fails."""
 
         def field(longitude: Array, latitude: Array) -> Array:
             return self._spread(function, self._outcome(function, longitude, latitude, *time), longitude)
@@ -177,12 +177,12 @@ class Case(ABC):
         return field
 
     def evaluated_velocity(self, time: float = 0.0) -> Callable[[Array, Array], tuple[Array, Array]]:
-        """`velocity` at `time` as a function of longitude and latitude; raises `SetupError` where it fails."""
+        """`velocity` at `time` as a function of longitude and latitude; raises `InputError` where it fails."""
 
         def field(longitude: Array, latitude: Array) -> tuple[Array, Array]:
             outcome = self._outcome(self.velocity, longitude, latitude, time)
             if not isinstance(outcome, tuple | list | np.ndarray) or len(outcome) != 2:
-                raise SetupError(
+                raise InputError(
                     f"velocity of {self.name} gives {type(outcome).__name__}; it must give an eastward and a "
                     "northward velocity"
                 )
@@ -195,20 +195,20 @@ class Case(ABC):
         """What `function` of this case gives."""
         try:
             return function(*arguments)
-        except SetupError:
+        except InputError:
             raise
         except (Exception, SystemExit) as error:
             place = _place_of_call(error)
-            raise SetupError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
+            raise InputError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
 
     def _spread(self, function: Callable[..., Any], outcome: object, longitude: Array) -> Array:
         """`outcome` of `function`, one number or one for each position, as an array of one for each."""
         try:
             values = np.asarray(outcome, dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise SetupError(f"{function.__name__} of {self.name} gives no numbers: {error!r}") from error
+            raise InputError(f"{function.__name__} of {self.name} gives no numbers: {error!r}") from error
         if values.shape not in ((), longitude.shape):
-            raise SetupError(
+            raise InputError(
                 f"{function.__name__} of {self.name} gives an array of shape {values.shape} for positions of "
                 f"shape {longitude.shape}; it must give one value for each position, or one number"
             )

@@ -12,7 +12,7 @@ from types import ModuleType
 from typing import Any, cast
 
 from cases.base import Case
-from swe.errors import SetupError
+from swe.errors import InputError
 
 MARK = ".py:"
 """What tells FILE.py:CLASS from the name of a case."""
@@ -26,11 +26,11 @@ def is_address(name: str) -> bool:
 def load_case(address: str) -> Case:
     """Make the case that `address`, FILE.py:CLASS, names; its name becomes the address with the whole path.
 
-    CLASS is a subclass of `Case`, or an object with all that a case has. Raises `SetupError` where there is none.
+    CLASS is a subclass of `Case`, or an object with all that a case has. Raises `InputError` where there is none.
     """
     file, _, attribute = address.rpartition(":")
     if not address.rpartition(MARK)[1]:
-        raise SetupError(f"{address} is a file; name the class in it as well: {address}:MyCase")
+        raise InputError(f"{address} is a file; name the class in it as well: {address}:MyCase")
     path = Path(file).absolute()
     found = _attribute(_imported(path), attribute, path)
     case = _made(found, address, path) if isinstance(found, type) else found
@@ -46,14 +46,14 @@ def _named(case: object, name: str) -> object:
         named = copy.copy(case)
         object.__setattr__(named, "__class__", type(kind.__name__, (kind,), members))
     except TypeError as error:
-        raise SetupError(f"{name} cannot be used ({error}); derive a class from cases.Case") from error
+        raise InputError(f"{name} cannot be used ({error}); derive a class from cases.Case") from error
     return named
 
 
 def _imported(path: Path) -> ModuleType:
     """The module in the file at `path`, executed anew."""
     if not path.is_file():
-        raise SetupError(f"{path}: no such file; write FILE.py:CLASS with the path of a Python file")
+        raise InputError(f"{path}: no such file; write FILE.py:CLASS with the path of a Python file")
     name = f"case file {path}"
     spec = importlib.util.spec_from_file_location(name, path)
     assert spec is not None
@@ -64,7 +64,7 @@ def _imported(path: Path) -> ModuleType:
         spec.loader.exec_module(module)
     except (Exception, SystemExit) as error:
         del sys.modules[name]
-        raise SetupError(f"{path} cannot be imported{line_in(path, error)}: {error!r}") from error
+        raise InputError(f"{path} cannot be imported{line_in(path, error)}: {error!r}") from error
     return module
 
 
@@ -80,7 +80,7 @@ def _attribute(module: ModuleType, attribute: str, path: Path) -> Any:
     if not hasattr(module, attribute):
         own = [name for name, value in vars(module).items() if _is_own_case(value, module)]
         others = f"it holds {', '.join(own)}" if own else "it holds no class derived from cases.Case"
-        raise SetupError(f"{path} holds no '{attribute}'; {others}")
+        raise InputError(f"{path} holds no '{attribute}'; {others}")
     return getattr(module, attribute)
 
 
@@ -91,42 +91,42 @@ def _is_own_case(value: object, module: ModuleType) -> bool:
 def _made(kind: type, address: str, path: Path) -> object:
     """An object of the class, with default parameters."""
     if not issubclass(kind, Case):
-        raise SetupError(f"{address} is no case; derive the class from cases.Case")
+        raise InputError(f"{address} is no case; derive the class from cases.Case")
     if inspect.isabstract(kind):
-        raise SetupError(f"{address} lacks {' and '.join(sorted(kind.__abstractmethods__))}; write them")
+        raise InputError(f"{address} lacks {' and '.join(sorted(kind.__abstractmethods__))}; write them")
     try:
         return kind()
-    except SetupError:
+    except InputError:
         raise
     except (Exception, SystemExit) as error:
         line = line_in(path, error)
         if isinstance(error, TypeError) and not line:
-            raise SetupError(f"{address} cannot be made ({error}); give every parameter a default") from error
-        raise SetupError(f"{address} cannot be made with its own parameters{line}: {error!r}") from error
+            raise InputError(f"{address} cannot be made ({error}); give every parameter a default") from error
+        raise InputError(f"{address} cannot be made with its own parameters{line}: {error!r}") from error
 
 
 def _require_members(case: object, address: str, path: Path) -> None:
-    """Raise `SetupError` where something that every case has, besides its name, is missing or no use."""
+    """Raise `InputError` where something that every case has, besides its name, is missing or no use."""
     members = {*Case.__annotations__, *vars(Case)} - {"name"}
     try:
         missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
     except (Exception, SystemExit) as error:
-        raise SetupError(f"a property of {address} fails{line_in(path, error)}: {error!r}") from error
+        raise InputError(f"a property of {address} fails{line_in(path, error)}: {error!r}") from error
     if missing:
-        raise SetupError(f"{address} lacks {', '.join(missing)}; derive the class from cases.Case and add them")
+        raise InputError(f"{address} lacks {', '.join(missing)}; derive the class from cases.Case and add them")
     known = cast(Case, case)
     if not (_is_finite(known.recommended_days) and known.recommended_days > 0.0):
-        raise SetupError(f"recommended_days of {address} is {known.recommended_days!r}; give a number above 0")
+        raise InputError(f"recommended_days of {address} is {known.recommended_days!r}; give a number above 0")
     if not (isinstance(known.title, str) and isinstance(known.reference, str)):
-        raise SetupError(f"title and reference of {address} are {known.title!r} and {known.reference!r}; give texts")
+        raise InputError(f"title and reference of {address} are {known.title!r} and {known.reference!r}; give texts")
     for name in ("prescribed_wind", "has_exact_solution"):
         if not isinstance(getattr(known, name), bool):
-            raise SetupError(f"{name} of {address} is {getattr(known, name)!r}; give True or False")
+            raise InputError(f"{name} of {address} is {getattr(known, name)!r}; give True or False")
     for name in ("background_depth", "radius", "gravity", "rotation_rate"):
         if not _is_finite(getattr(known, name)):
-            raise SetupError(f"{name} of {address} is {getattr(known, name)!r}; give a finite number")
+            raise InputError(f"{name} of {address} is {getattr(known, name)!r}; give a finite number")
     if not (known.convergence_order is None or _is_finite(known.convergence_order)):
-        raise SetupError(f"convergence_order of {address} is {known.convergence_order!r}; give a number or None")
+        raise InputError(f"convergence_order of {address} is {known.convergence_order!r}; give a number or None")
 
 
 def _is_finite(value: object) -> bool:

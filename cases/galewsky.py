@@ -15,7 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from cases.base import Case
 from mesh.arrays import Array
-from swe.errors import SetupError
+from swe.errors import InputError
 
 PANELS = 4096
 """Intervals into which the latitudes of the jet are divided."""
@@ -71,7 +71,7 @@ class Galewsky(Case):
         self.require_positive("bump_width", "bump_length")
         self.require_angles("bump_latitude")
         if not -0.5 * np.pi < self.southern_edge < self.northern_edge < 0.5 * np.pi:
-            raise SetupError(
+            raise InputError(
                 f"the jet has its edges at {self.southern_edge:g} and {self.northern_edge:g} rad; southern_edge must "
                 "be less than northern_edge, and both between the poles"
             )

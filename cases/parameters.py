@@ -11,7 +11,7 @@ from typing import Any, get_type_hints
 
 from cases.base import Case
 from cases.case_file import line_in
-from swe.errors import SetupError
+from swe.errors import InputError
 
 Value = float | bool | str
 """Of a parameter: a number or a truth value, or the text of one."""
@@ -35,13 +35,13 @@ def split_settings(settings: Iterable[str]) -> dict[str, str]:
     for setting in settings:
         name, equals, text = setting.partition("=")
         if not equals:
-            raise SetupError(f"'{setting}' sets nothing; write NAME=VALUE, as in angle=0.05")
+            raise InputError(f"'{setting}' sets nothing; write NAME=VALUE, as in angle=0.05")
         pairs[name.strip()] = text.strip()
     return pairs
 
 
 def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
-    """`case` with other values of some parameters; raise `SetupError` where it has no such or they are no values."""
+    """`case` with other values of some parameters; raise `InputError` where it has no such or they are no values."""
     present = case.parameters()
     # The record of a run has lists where a case has tuples.
     parameters = {
@@ -50,11 +50,11 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     }
     for name in parameters:
         if name not in present:
-            raise SetupError(f"{case.name} has no parameter '{name}'; choose among {', '.join(present)}")
+            raise InputError(f"{case.name} has no parameter '{name}'; choose among {', '.join(present)}")
     try:
         kinds = get_type_hints(type(case))
     except Exception as error:
-        raise SetupError(f"the types of the parameters of {case.name} cannot be told: {error!r}") from error
+        raise InputError(f"the types of the parameters of {case.name} cannot be told: {error!r}") from error
     changed: dict[str, Any] = {
         name: _converted(case, name, value, kinds.get(name))
         for name, value in parameters.items()
@@ -63,15 +63,15 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     if not changed:
         return case
     if not is_dataclass(case):
-        raise SetupError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
+        raise InputError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
     try:
         return replace(case, **changed)
-    except SetupError:
+    except InputError:
         raise
     except (Exception, SystemExit) as error:
         settings = ", ".join(f"{name} = {value!r}" for name, value in changed.items())
         file = case.name.rpartition(":")[0]  # for the name of a case of a user is FILE.py:CLASS
-        raise SetupError(f"{case.name} cannot be made with {settings}{line_in(file, error)}: {error!r}") from error
+        raise InputError(f"{case.name} cannot be made with {settings}{line_in(file, error)}: {error!r}") from error
 
 
 def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
@@ -79,7 +79,7 @@ def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
     if kind is None:
         return value
     if kind not in KINDS:
-        raise SetupError(f"{name} of {case.name} is neither a number nor true or false; change it in its file")
+        raise InputError(f"{name} of {case.name} is neither a number nor true or false; change it in its file")
     try:
         if kind is bool:
             return _truth(value)
@@ -90,7 +90,7 @@ def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
     except (ValueError, TypeError, OverflowError, ZeroDivisionError, SyntaxError, RecursionError, MemoryError):
         hint = ", such as 0.05 or pi/2-0.05" if kind is float else ""
         shown = value[:LONGEST_SHOWN] if isinstance(value, str) else value
-        raise SetupError(f"{name} is {shown!r}; it must be {KINDS[kind]}{hint}") from None
+        raise InputError(f"{name} is {shown!r}; it must be {KINDS[kind]}{hint}") from None
 
 
 def _truth(value: Value) -> bool:

@@ -8,7 +8,7 @@ from cases.galewsky import Galewsky
 from cases.lake_at_rest import LakeAtRest
 from cases.parameters import Value, with_parameters
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
-from swe.errors import SetupError
+from swe.errors import InputError
 
 CASES: dict[str, type[Case]] = {
     case.name: case for case in (Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest)
@@ -19,7 +19,7 @@ def find_case(name: str, parameters: Mapping[str, Value] | None = None) -> Case:
     """Return the case called `name`, or that at an address FILE.py:CLASS, with `parameters` where they are given.
 
     What is not given is as in the paper. Values may be text, as typed; those that the record of a run holds under
-    "case" and "parameters" make its case again. Raises `SetupError` where there is no such case or parameter.
+    "case" and "parameters" make its case again. Raises `InputError` where there is no such case or parameter.
     """
     return with_parameters(_default_case(name), parameters or {})
 
@@ -28,7 +28,7 @@ def _default_case(name: str) -> Case:
     if is_address(name):
         return load_case(name)
     if name not in CASES:
-        raise SetupError(
+        raise InputError(
             f"there is no case named '{name}'; choose one of {', '.join(CASES)}, or FILE.py:CLASS for one of your own"
         )
     return CASES[name]()

@@ -12,7 +12,7 @@ from cases.base import Case
 from mesh.arrays import Array
 from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import EARTH_RADIUS, GRAVITY, SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 
 REFERENCE = "Williamson et al. (1992), J. Comput. Phys. 102, 211-224, https://doi.org/10.1016/S0021-9991(05)80016-6"
 
@@ -242,7 +242,7 @@ class Williamson6(Case):
     def __post_init__(self) -> None:
         super().__post_init__()
         if not 1 <= self.wave_number <= LARGEST_WAVE_NUMBER:
-            raise SetupError(f"wave_number is {self.wave_number}; it must be 1 to {LARGEST_WAVE_NUMBER}")
+            raise InputError(f"wave_number is {self.wave_number}; it must be 1 to {LARGEST_WAVE_NUMBER}")
 
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """The zonal flow and the wave, a spherical harmonic of degree R + 1."""

@@ -10,7 +10,7 @@ from mesh.integrals.quadrature import Sampling
 from mesh.plain import plain_number
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
@@ -40,7 +40,7 @@ class Configuration:
 class Options:
     """Options of `swe.run.simulation.Simulation`, which tells what they mean; numbers of any type become floats.
 
-    Raises `SetupError` where one has the wrong type or is out of range.
+    Raises `InputError` where one has the wrong type or is out of range.
     """
 
     time_step: float | None = None
@@ -59,29 +59,29 @@ class Options:
             words = name.replace("_", " ")
             if name in CHOICES:
                 if not (isinstance(value, str) and value in CHOICES[name]):
-                    raise SetupError(f"the {words} is {value!r}; it must be {' or '.join(map(repr, CHOICES[name]))}")
+                    raise InputError(f"the {words} is {value!r}; it must be {' or '.join(map(repr, CHOICES[name]))}")
                 object.__setattr__(self, name, str(value))
                 continue
-            number = plain_number(f"the {words}", value, SetupError)
+            number = plain_number(f"the {words}", value, InputError)
             if name in ("anticipation", "dissipation"):
                 if not 0.0 <= number < np.inf:
-                    raise SetupError(f"the {words} is {number:g}; it must be a finite number, and not negative")
+                    raise InputError(f"the {words} is {number:g}; it must be a finite number, and not negative")
             elif not 0.0 < number < np.inf:
-                raise SetupError(f"the {words} is {number:g} s; it must be positive and finite")
+                raise InputError(f"the {words} is {number:g} s; it must be positive and finite")
             object.__setattr__(self, name, number)
 
     def require_suitable(self, case_name: str, prescribed_wind: bool) -> None:
-        """Raise `SetupError` where options do not go with the case."""
+        """Raise `InputError` where options do not go with the case."""
         if prescribed_wind and (self.integrator != "rk4" or self.anticipation > 0.0 or self.dissipation > 0.0):
-            raise SetupError(
+            raise InputError(
                 f"the wind of {case_name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
             )
 
     def require_suitable_mesh(self, mesh: VoronoiMesh) -> None:
-        """Raise `SetupError` where a term divides by the length of edges that have none."""
+        """Raise `InputError` where a term divides by the length of edges that have none."""
         none = vanishing_edges(mesh)
         if len(none) and (self.anticipation > 0.0 or self.dissipation > 0.0):
-            raise SetupError(
+            raise InputError(
                 f"edges of the mesh have no length ({len(none)}, the first of them {none[0]}, counted from 0), as four "
                 "generators lie on one circle, and anticipation and dissipation divide by it; leave them out, or make "
                 "another mesh"

@@ -3,8 +3,12 @@
 import signal
 
 
-class SetupError(ValueError):
+class InputError(ValueError):
     """A request for a run is wrong; the message says what, which value and what to do."""
+
+
+SetupError = InputError
+"""The name of earlier versions."""
 
 
 class SetupWarning(UserWarning):

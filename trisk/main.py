@@ -218,7 +218,7 @@ def run(
     from cases.parameters import split_settings
     from swe import Simulation
     from swe.configuration import Options
-    from swe.errors import SetupError
+    from swe.errors import InputError
     from swe.output.recorder import days_of, run_to_go_on_with
     from trisk.cli.meshes import chosen_mesh, mesh_of_run
     from trisk.cli.report import print_run
@@ -240,7 +240,7 @@ def run(
     if days is None:
         days = chosen.recommended_days if before is None else days_of(before, output)
     if not 0.0 < days < float("inf"):
-        raise SetupError(f"the run is to last {days:g} days; give a number above 0")
+        raise InputError(f"the run is to last {days:g} days; give a number above 0")
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     known = mesh_of_run(output, cells) if resume and mesh_file is None else None
@@ -470,11 +470,11 @@ def _exit_code(error: Exception) -> int | None:
     if isinstance(error, OSError):
         return BAD_INPUT if error.errno in ERRORS_OF_PATHS else RUN_FAILED
     from mesh import MeshError
-    from swe.errors import RunError, RunStopped, SetupError
+    from swe.errors import InputError, RunError, RunStopped
 
     if isinstance(error, RunStopped):
         return STOPPED + error.signal
-    if isinstance(error, MeshError | SetupError) or NO_THREADING_LAYER in str(error):
+    if isinstance(error, MeshError | InputError) or NO_THREADING_LAYER in str(error):
         return BAD_INPUT
     if isinstance(error, RunError | MemoryError):
         return RUN_FAILED

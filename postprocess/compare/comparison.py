@@ -23,7 +23,7 @@ from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import RunSolution, Solution, case_of, choose_solution, require_same_problem
 from postprocess.runs.reading import DAY_TOLERANCE, Run, days_in_words, days_of_both, read_run
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 
 SHOWN_DIAGNOSTICS = (
     "mass_change",
@@ -86,7 +86,7 @@ def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequenc
     """Compare runs on `days`, by default on the last that all and the reference have.
 
     `reference` is "auto", "exact", a reference file or a run directory: see
-    `postprocess.compare.solutions.choose_solution`. Raises `SetupError` where the runs are not of one case, one radius
+    `postprocess.compare.solutions.choose_solution`. Raises `InputError` where the runs are not of one case, one radius
     and the same parameters, where a day is missing or where there is nothing to compare with.
     """
     for run in runs[1:]:
@@ -103,7 +103,7 @@ def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequenc
     background = _background_depth(runs[0])
     entries = [_entry(run, solution, day, background) for day in chosen for run in runs]
     if not any(entry.norms for entry in entries):
-        raise SetupError(f"{runs[0].directory} is compared with nothing but itself; name another run or reference")
+        raise InputError(f"{runs[0].directory} is compared with nothing but itself; name another run or reference")
     return Comparison(solution, chosen, tuple(entries))
 
 
@@ -181,7 +181,7 @@ def _conservation(run: Run, day: float) -> dict[str, float]:
 
 def _require_same_radius(run: Run, first: Run) -> None:
     if not np.isclose(run.mesh.sphere_radius, first.mesh.sphere_radius, rtol=1e-12, atol=0.0):
-        raise SetupError(
+        raise InputError(
             f"{run.directory} is on a sphere of radius {run.mesh.sphere_radius:g} m, but {first.directory} on one of "
             f"{first.mesh.sphere_radius:g} m; compare runs on one sphere"
         )
@@ -194,7 +194,7 @@ def _common_days(runs: Sequence[Run]) -> list[float]:
         days = days_of_both(days, run.days)
     if not days:
         of_each = "; ".join(f"{run.directory}: {days_in_words(run.days)}" for run in runs)
-        raise SetupError(f"there is no day after the start of which all runs have a snapshot ({of_each}); run them on")
+        raise InputError(f"there is no day after the start of which all runs have a snapshot ({of_each}); run them on")
     return days
 
 
@@ -204,7 +204,7 @@ def _last_known_day(solution: Solution, days: Sequence[float]) -> float:
         return days[-1]
     known = days_of_both(sorted(solution.days), days)
     if not known:
-        raise SetupError(
+        raise InputError(
             f"{solution.name} is known on day {days_in_words(solution.days)}, but the runs have snapshots of day "
             f"{days_in_words(days)} in common; make a snapshot of one of the former"
         )

@@ -16,7 +16,7 @@ from postprocess.compare.remap import Remap, remap_cells, remap_vertices
 from postprocess.reference.stored_references import stored_path
 from postprocess.runs.reading import Run, days_in_words, days_of_both, read_run
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 
 PARAMETER_TOLERANCE = 1e-12
 """Relative difference up to which two values of a parameter are the same."""
@@ -130,7 +130,7 @@ def case_of(run: Run) -> Case | None:
     """The case of a run with its parameters; None where it is unknown, or its file was moved or changed."""
     try:
         return find_case(run.case, run.parameters)
-    except SetupError:
+    except InputError:
         return None
 
 
@@ -139,7 +139,7 @@ def choose_solution(wanted: str, runs: Sequence[Run], days: Sequence[float], eve
 
     `wanted` is "exact", the path of a reference file or of a run directory, or "auto": the exact solution if the case
     has one, else the reference that comes with the package if it is of the case and of one of `days`, or of `every`
-    one, else the first run. Raises `SetupError` where there is no such solution or it is one of something else.
+    one, else the first run. Raises `InputError` where there is no such solution or it is one of something else.
     """
     if wanted == "auto":
         return _best_solution(runs, days, every)
@@ -151,20 +151,20 @@ def choose_solution(wanted: str, runs: Sequence[Run], days: Sequence[float], eve
         require_same_problem(other.directory, other.case, other.parameters, runs[0])
         return RunSolution(other)
     if not path.exists():
-        raise SetupError(f"there is no reference '{wanted}'; give exact, auto, a reference file or a run directory")
+        raise InputError(f"there is no reference '{wanted}'; give exact, auto, a reference file or a run directory")
     reference = _reference_files().read_reference(path)
     require_same_problem(path, reference.case.name, reference.case.parameters(), runs[0])
     return reference
 
 
 def require_same_problem(what: Path, case: str, parameters: Mapping[str, object], run: Run) -> None:
-    """Raise `SetupError` where the file or directory `what` is not of the case and the parameters of `run`."""
+    """Raise `InputError` where the file or directory `what` is not of the case and the parameters of `run`."""
     if case != run.case:
-        raise SetupError(f"{what} is of case {case}, but {run.directory} of {run.case}; compare what is of one case")
+        raise InputError(f"{what} is of case {case}, but {run.directory} of {run.case}; compare what is of one case")
     for name in sorted(parameters.keys() & run.parameters.keys()):
         theirs, ours = parameters[name], run.parameters[name]
         if not _same(theirs, ours):
-            raise SetupError(
+            raise InputError(
                 f"{what} has {name} = {theirs!r}, but {run.directory} has {ours!r}; compare what agrees in this"
             )
 
@@ -182,7 +182,7 @@ def _best_solution(runs: Sequence[Run], days: Sequence[float], every: bool) -> S
         return ExactSolution(case)
     try:
         stored = _stored_reference(runs[0], days, every)
-    except SetupError as error:
+    except InputError as error:
         if len(runs) == 1:
             raise
         warnings.warn(f"{error}; the first run is the reference instead", stacklevel=1)
@@ -190,7 +190,7 @@ def _best_solution(runs: Sequence[Run], days: Sequence[float], every: bool) -> S
     if stored is not None:
         return stored
     if len(runs) == 1:
-        raise SetupError(
+        raise InputError(
             f"there is nothing to compare {runs[0].directory} with: no solution of {runs[0].case} with its parameters "
             f"is known on day {days_in_words(days)}; name another run or a reference file"
         )
@@ -200,7 +200,7 @@ def _best_solution(runs: Sequence[Run], days: Sequence[float], every: bool) -> S
 def _exact_solution(run: Run) -> Solution:
     case = case_of(run)
     if case is None or not case.has_exact_solution:
-        raise SetupError(f"no exact solution of {run.case} is known; name a reference file or another run")
+        raise InputError(f"no exact solution of {run.case} is known; name a reference file or another run")
     return ExactSolution(case)
 
 
@@ -217,12 +217,12 @@ def _stored_reference(run: Run, days: Sequence[float], every: bool) -> Solution 
         return None
     try:
         require_same_problem(run.directory, reference.case.name, reference.case.parameters(), run)
-    except SetupError:
+    except InputError:
         return None
     return reference
 
 
 def _reference_files() -> ModuleType:
-    """The module that reads reference files; raises `SetupError` where the package that it needs is missing."""
+    """The module that reads reference files; raises `InputError` where the package that it needs is missing."""
     # Imported when it is needed: everything else here works without the optional package.
     return importlib.import_module("postprocess.reference.reference_file")

@@ -9,7 +9,7 @@ from mesh.generation.generators import icosahedral_mesh
 from mesh.generation.optimizer import Limits
 from mesh.generation.scvt import Request, generate_scvt
 from mesh.triangulation.ordering import renumber
-from swe.errors import SetupError
+from swe.errors import InputError
 
 Measures = tuple[float, float, float, float, float]
 """mu, sigma_avg, sigma_min, q_avg, q_min."""
@@ -55,10 +55,10 @@ class Row:
 def table1(max_level: int, tolerance: float, tell: Callable[[Row], None] | None = None) -> list[Row]:
     """Rows for levels 2 to `max_level` (10*4^(level-1)+2 cells), SCVTs converged to `tolerance` mean spacings.
 
-    `tell` is called with each row as it is made. Raises `SetupError` for a level that the table does not have.
+    `tell` is called with each row as it is made. Raises `InputError` for a level that the table does not have.
     """
     if not FIRST_LEVEL <= max_level <= max(PUBLISHED_SCVT):
-        raise SetupError(f"level {max_level} is not in Table 1; choose one from {FIRST_LEVEL} to {max(PUBLISHED_SCVT)}")
+        raise InputError(f"level {max_level} is not in Table 1; choose one from {FIRST_LEVEL} to {max(PUBLISHED_SCVT)}")
     rows = []
     for level in range(FIRST_LEVEL, max_level + 1):
         bisection = mesh_quality(mesh_from_points(*renumber(*icosahedral_mesh(level - 1))))

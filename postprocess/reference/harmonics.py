@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from swe.errors import SetupError
+from swe.errors import InputError
 
 try:
     import ducc0
 except ImportError as missing:
-    raise SetupError(
+    raise InputError(
         "spherical harmonics need the package ducc0; install it with pip install 'trisk[reference]'"
     ) from missing
 

@@ -10,7 +10,7 @@ from mesh.arrays import Array
 from postprocess.reference.harmonics import Coefficients, Harmonics, truncated, truncation_of
 from postprocess.reference.spectral_model import SpectralModel
 from postprocess.runs.reading import DAY_TOLERANCE, days_in_words
-from swe.errors import SetupError
+from swe.errors import InputError
 
 REFERENCE_DAYS = {"williamson5": (5.0, 10.0, 15.0), "williamson6": (14.0,), "galewsky": (6.0,)}
 """Days of the stored references by case."""
@@ -77,7 +77,7 @@ class Reference:
         rows = np.flatnonzero(np.abs(np.array(self.days) - day) < DAY_TOLERANCE)
         if not len(rows):
             known = days_in_words(self.days)
-            raise SetupError(f"the reference of {self.case.name} has no day {day:g}; choose among {known}")
+            raise InputError(f"the reference of {self.case.name} has no day {day:g}; choose among {known}")
         return int(rows[0])
 
 
@@ -86,25 +86,25 @@ def make_reference(
 ) -> Reference:
     """Run the spectral model at `truncation`, its half and its quarter, and keep what the half resolves.
 
-    What lies beyond half the truncation is a part of what the two highest truncations differ by. Raises `SetupError`
+    What lies beyond half the truncation is a part of what the two highest truncations differ by. Raises `InputError`
     where an argument is out of range or the case is not one of the full equations, `RunError` where a run fails.
     """
     if not LEAST_TRUNCATION <= truncation <= LARGEST_TRUNCATION:
-        raise SetupError(
+        raise InputError(
             f"the truncation is {truncation}; give at least {LEAST_TRUNCATION}, at most {LARGEST_TRUNCATION}"
         )
     wrong = [day for day in days if not 0.0 < day <= LAST_DAY]
     if wrong or not days:
-        raise SetupError(
+        raise InputError(
             f"a reference of {case.name} cannot be given on day {min(wrong, default=0.0):g}; give days after the "
             f"start, up to {LAST_DAY:g}"
         )
     if not damping_hours > LEAST_DAMPING_HOURS:
-        raise SetupError(
+        raise InputError(
             f"the damping time is {damping_hours:g} hours; it must be above {LEAST_DAMPING_HOURS:g}, or inf for none"
         )
     if case.prescribed_wind:
-        raise SetupError(
+        raise InputError(
             f"{case.name} prescribes its wind, which the spectral model does not do; it has an exact solution"
         )
     truncations = (truncation // 4, truncation // 2, truncation)

@@ -14,7 +14,7 @@ from mesh.safe_files import AnyPath, dataset, written_aside
 from postprocess.reference.harmonics import Coefficients, Harmonics, truncation_of
 from postprocess.reference.making import MEASURES, Reference
 from postprocess.reference.stored_references import stored_path
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.output.files import package_versions
 
 
@@ -121,7 +121,7 @@ def _write_variable(
 
 
 def read_reference(path: AnyPath) -> Reference:
-    """Read a reference; raise `SetupError` where the file is none, or is damaged."""
+    """Read a reference; raise `InputError` where the file is none, or is damaged."""
     try:
         with dataset(path) as file:
             file.set_auto_mask(False)
@@ -129,11 +129,11 @@ def read_reference(path: AnyPath) -> Reference:
         _require_sound(reference)
         return reference
     except (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError) as error:
-        raise SetupError(
+        raise InputError(
             f"{path} is no readable reference solution ({error}); make one with 'trisk reference'"
         ) from error
     except MemoryError as error:
-        raise SetupError(f"{path} claims to be larger than the memory; make it anew with 'trisk reference'") from error
+        raise InputError(f"{path} claims to be larger than the memory; make it anew with 'trisk reference'") from error
 
 
 def _reference_of(file: netCDF4.Dataset) -> Reference:

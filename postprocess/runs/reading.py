@@ -14,7 +14,7 @@ from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.output.files import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, load_record, read_series
 
 DAY_TOLERANCE = 1e-6
@@ -51,14 +51,14 @@ class Run:
     series: dict[str, Array]
 
     def snapshot(self, day: float) -> Snapshot:
-        """The snapshot of `day`; raise `SetupError` where there is none."""
+        """The snapshot of `day`; raise `InputError` where there is none."""
         self.require_snapshot(day)
         return self._read(int(np.argmin(np.abs(self.days - day))))
 
     def require_snapshot(self, day: float) -> None:
-        """Raise `SetupError` where there is no snapshot of `day`."""
+        """Raise `InputError` where there is no snapshot of `day`."""
         if not days_of_both([day], self.days):
-            raise SetupError(
+            raise InputError(
                 f"{self.directory} has no snapshot of day {day:g}; its days are {days_in_words(self.days)}"
             )
 
@@ -72,7 +72,7 @@ class Run:
             snapshot = Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
         wrong = [name for name, values in snapshot.fields.items() if not np.isfinite(values).all()]
         if wrong or not snapshot.fields["thickness"].min(initial=np.inf) > 0.0:
-            raise SetupError(
+            raise InputError(
                 f"{self.directory / HISTORY_FILE} has no sound {wrong[0] if wrong else 'thickness'} on day "
                 f"{snapshot.day:g}; it is damaged, run it again"
             )
@@ -80,7 +80,7 @@ class Run:
 
 
 def read_run(directory: AnyPath) -> Run:
-    """Open a run directory; raise `SetupError` where it holds no run, `MeshError` where its mesh is not valid."""
+    """Open a run directory; raise `InputError` where it holds no run, `MeshError` where its mesh is not valid."""
     directory = Path(directory)
     try:
         record = load_record(directory)
@@ -105,27 +105,27 @@ def read_run(directory: AnyPath) -> Run:
         _require_rows(run)
         _require_sizes(run.last_snapshot(), run)
         return run
-    except (MeshError, SetupError):
+    except (MeshError, InputError):
         raise
     except (OSError, RuntimeError, ValueError, AttributeError, LookupError, TypeError, ArithmeticError) as error:
-        raise SetupError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+        raise InputError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
 
 
 def _require_rows(run: Run) -> None:
-    """Raise `SetupError` where the files have no rows, or not those of ascending times that a run writes."""
+    """Raise `InputError` where the files have no rows, or not those of ascending times that a run writes."""
     for name, times in ((HISTORY_FILE, run.days), (DIAGNOSTICS_FILE, run.series["time"])):
         if not len(times):
-            raise SetupError(f"{run.directory / name} has no rows; the run was killed at its start, run it again")
+            raise InputError(f"{run.directory / name} has no rows; the run was killed at its start, run it again")
         if not np.all(np.diff(times, prepend=-1.0) > 0.0):
-            raise SetupError(f"{run.directory / name} has times that do not ascend; it is damaged, run it again")
+            raise InputError(f"{run.directory / name} has times that do not ascend; it is damaged, run it again")
 
 
 def _require_sizes(snapshot: Snapshot, run: Run) -> None:
-    """Raise `SetupError` where the fields of `snapshot` are not on the mesh of `run`."""
+    """Raise `InputError` where the fields of `snapshot` are not on the mesh of `run`."""
     places = {"nCells": run.mesh.n_cells, "nEdges": run.mesh.n_edges, "nVertices": run.mesh.n_vertices}
     for name, (place, *_) in FIELDS.items():
         if snapshot.fields[name].shape != (places[place],):
-            raise SetupError(
+            raise InputError(
                 f"{run.directory / HISTORY_FILE} has {snapshot.fields[name].size} values of {name}, but "
                 f"{MESH_FILE} beside it needs {places[place]}; put the files of one run together"
             )

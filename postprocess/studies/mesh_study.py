@@ -23,7 +23,7 @@ from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
 from postprocess.studies.families import FAMILIES
 from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, require_days, write_table
-from swe.errors import SetupError
+from swe.errors import InputError
 
 LEAST_CELLS, LARGEST_CELLS = 162, 655362
 
@@ -32,7 +32,7 @@ LEAST_CELLS, LARGEST_CELLS = 162, 655362
 class Plan:
     """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
 
-    Raises `SetupError` where a family is unknown or a number of cells is none of the bisected icosahedron.
+    Raises `InputError` where a family is unknown or a number of cells is none of the bisected icosahedron.
     """
 
     folder: Path
@@ -45,16 +45,16 @@ class Plan:
     def __post_init__(self) -> None:
         for family in self.families:
             if family not in FAMILIES:
-                raise SetupError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
+                raise InputError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
         for cells in self.cells:
             if icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
-                raise SetupError(
+                raise InputError(
                     f"{cells} cells are no bisected icosahedron of a fit size; choose among {LEAST_CELLS}, 642, 2562, "
                     f"... up to {LARGEST_CELLS}"
                 )
         require_days(self.days)
         if not 0.0 < self.error_day <= self.days:
-            raise SetupError(
+            raise InputError(
                 f"errors are to be taken on day {self.error_day:g}, which is not within the {self.days:g} days of the "
                 "run; choose a day that is"
             )
@@ -105,7 +105,7 @@ def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
     """The run beside the solution of its case; None where that is not known, for a reason that is told."""
     try:
         return compare_runs([run], days=[day])
-    except SetupError as error:
+    except InputError as error:
         tell(f"no errors: {error}")
         return None
 

@@ -16,7 +16,7 @@ from mesh.safe_files import written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs.reading import Run, read_run
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import RunError, SetupError
+from swe.errors import InputError, RunError
 from swe.output.files import load_record
 from swe.run.simulation import Simulation
 
@@ -40,9 +40,9 @@ MOST_DAYS = 1e5
 
 
 def require_days(days: float) -> None:
-    """Raise `SetupError` where the runs of a study cannot last for `days`."""
+    """Raise `InputError` where the runs of a study cannot last for `days`."""
     if not 0.0 < days <= MOST_DAYS:
-        raise SetupError(
+        raise InputError(
             f"the runs of a study are to last {days:g} days; give a number above 0 and up to {MOST_DAYS:g}"
         )
 
@@ -75,7 +75,7 @@ class Task:
         """Go on with the run where the directory holds a part of it, else run it from the start."""
         try:
             self._simulation(resume=True).run(self.days, progress)
-        except SetupError:
+        except InputError:
             self._simulation(resume=False).run(self.days, progress)
 
     def _simulation(self, resume: bool) -> Simulation:
@@ -96,7 +96,7 @@ class Task:
             return None
         try:
             return read_run(self.directory)
-        except (SetupError, MeshError):
+        except (InputError, MeshError):
             return None
 
     def _is_recorded(self) -> bool:

@@ -23,7 +23,7 @@ from postprocess.studies.study_folder import (
     require_days,
     write_table,
 )
-from swe.errors import SetupError
+from swe.errors import InputError
 
 ORDER_OF_ENERGY_DRIFT = 5
 """Classical RK4 dissipates the energy of oscillations at this order in the time step."""
@@ -41,7 +41,7 @@ LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-3, 1e6
 
 @dataclass(frozen=True)
 class TimePlan:
-    """Runs of `case` on `mesh` for `days` with each of `time_steps`, s; raises `SetupError` for fewer than two."""
+    """Runs of `case` on `mesh` for `days` with each of `time_steps`, s; raises `InputError` for fewer than two."""
 
     folder: Path
     case: Case
@@ -53,11 +53,11 @@ class TimePlan:
         require_days(self.days)
         for time_step in self.time_steps:
             if not LEAST_TIME_STEP <= time_step <= LARGEST_TIME_STEP:
-                raise SetupError(
+                raise InputError(
                     f"a time step is {time_step:g} s; give ones from {LEAST_TIME_STEP:g} to {LARGEST_TIME_STEP:g} s"
                 )
         if len(set(self.time_steps)) < 2:
-            raise SetupError("a study of time steps needs at least two of them; give --dt more than once")
+            raise InputError("a study of time steps needs at least two of them; give --dt more than once")
 
 
 def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[Row]:

@@ -10,7 +10,7 @@ from mesh.arrays import Array
 from mesh.discrete.operators import vertex_to_cell
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.parallel.exact_sum import exact_sum
 from swe.state import State
 
@@ -57,7 +57,7 @@ class ShallowWaterModel:
 
     Raises
     ------
-    SetupError
+    InputError
         Where a field has the wrong shape or type or is not finite.
     """
 
@@ -249,13 +249,13 @@ class ShallowWaterModel:
 
 
 def check_field(name: str, values: Array, size: int) -> None:
-    """Raise `SetupError` where `values` are not `size` finite numbers of double precision."""
+    """Raise `InputError` where `values` are not `size` finite numbers of double precision."""
     if not isinstance(values, np.ndarray):
-        raise SetupError(f"{name} is {type(values).__name__}; it must be an array of {size} numbers")
+        raise InputError(f"{name} is {type(values).__name__}; it must be an array of {size} numbers")
     if values.shape != (size,):
-        raise SetupError(f"{name} has shape {values.shape}, but the mesh needs ({size},)")
+        raise InputError(f"{name} has shape {values.shape}, but the mesh needs ({size},)")
     if values.dtype != np.float64:
-        raise SetupError(f"{name} has numbers of type {values.dtype}; it must have float64")
+        raise InputError(f"{name} has numbers of type {values.dtype}; it must have float64")
     wrong = np.flatnonzero(~np.isfinite(values))
     if len(wrong):
-        raise SetupError(f"{name} is {values[wrong[0]]} at entity {wrong[0]} (counted from 0); it must be finite")
+        raise InputError(f"{name} is {values[wrong[0]]} at entity {wrong[0]} (counted from 0); it must be finite")

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from mesh.safe_files import written_aside
-from swe.errors import RunError, SetupError, SetupWarning
+from swe.errors import InputError, RunError, SetupWarning
 from swe.state import State
 
 KEPT = 2
@@ -72,7 +72,7 @@ def write_checkpoint(directory: Path, checkpoint: Checkpoint, shared: bool = Fal
 def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float = float("inf")) -> Checkpoint | None:
     """The last checkpoint of a run directory that is whole and not after `latest`, seconds; None where there is none.
 
-    Warns with `SetupWarning` of one that is damaged; raises `SetupError` where all are.
+    Warns with `SetupWarning` of one that is damaged; raises `InputError` where all are.
     """
     shared = [path for path in (directory / SHARED,) if path.exists()]
     numbered = checkpoint_paths(directory)[::-1]
@@ -89,7 +89,7 @@ def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float =
                 found.append(checkpoint)
                 break
     if (shared or numbered) and not any_whole:
-        raise SetupError(f"no checkpoint in {directory} is whole; start anew (--force)")
+        raise InputError(f"no checkpoint in {directory} is whole; start anew (--force)")
     return max(found, key=lambda checkpoint: checkpoint.time, default=None)
 
 

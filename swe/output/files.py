@@ -24,7 +24,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 from swe.diagnostics.budgets import rate_series, rates_of_time
 from swe.diagnostics.invariants import Changes, Invariants
 from swe.equations.model import Diagnosis, ShallowWaterModel
-from swe.errors import RunError, SetupError
+from swe.errors import InputError, RunError
 from swe.state import State
 
 HISTORY_FILE = "history.nc"
@@ -142,7 +142,7 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 class _TimeFile:
     """A file that grows along time; `rows` are those that stay, all by default, and what follows them is cut off.
 
-    Raises `SetupError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
+    Raises `InputError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
     `size` bytes, or its first `rows` are not those of ascending times.
     """
 
@@ -158,12 +158,12 @@ class _TimeFile:
             present = len(self._file.dimensions["Time"])
             missing = {"time", *names} - set(self._file.variables)
         except (OSError, RuntimeError, KeyError) as error:
-            raise SetupError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
+            raise InputError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
         self.rows = present if rows is None else rows
         times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
         if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
             self._file.close()
-            raise SetupError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
+            raise InputError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
         if self.rows < present:
             self._file.close()
             _cut_off(path, self.rows, size)
@@ -295,16 +295,16 @@ class DiagnosticsFile(_TimeFile):
 
 
 def read_record(directory: Path) -> dict[str, object] | None:
-    """What `run.json` holds, None where there is none; raise `SetupError` where it is no record of a run."""
+    """What `run.json` holds, None where there is none; raise `InputError` where it is no record of a run."""
     path = directory / RECORD_FILE
     try:
         return load_record(directory)
     except (FileNotFoundError, NotADirectoryError):
         return None
     except TypeError as error:
-        raise SetupError(f"{path} is no record of a run; remove it or choose another directory") from error
+        raise InputError(f"{path} is no record of a run; remove it or choose another directory") from error
     except (OSError, ValueError, RecursionError) as error:
-        raise SetupError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
+        raise InputError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
 
 
 def load_record(directory: Path) -> dict[str, Any]:

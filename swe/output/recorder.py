@@ -23,7 +23,7 @@ from swe.diagnostics.budgets import measure_rates
 from swe.diagnostics.invariants import Invariants, measure_invariants, relative_changes
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import ShallowWaterModel
-from swe.errors import RunError, RunStopped, SetupError, SetupWarning
+from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.output.checkpoint import (
     PATTERN,
     Checkpoint,
@@ -84,7 +84,7 @@ class Moment:
 class Recorder:
     """Writes snapshots, diagnostics, checkpoints and the record of a run.
 
-    Raises `SetupError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
+    Raises `InputError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
     go on, or one to go on with that was made otherwise.
     """
 
@@ -112,11 +112,11 @@ class Recorder:
         return self._found is not None
 
     def _require_same(self, before: dict[str, object]) -> None:
-        """Raise `SetupError` where the run of an earlier record was made otherwise; take over its days and time."""
+        """Raise `InputError` where the run of an earlier record was made otherwise; take over its days and time."""
         for name, now in self._description.items():
             then = before.get(name)
             if then != now:
-                raise SetupError(f"{self.directory} holds {_difference(name, then, now)}; {HOW_TO_GO_ON}")
+                raise InputError(f"{self.directory} holds {_difference(name, then, now)}; {HOW_TO_GO_ON}")
         if before.get("versions") != self._versions:
             warnings.warn(
                 f"{self.directory} was begun with other versions of packages; its files may differ in the last digits",
@@ -156,9 +156,9 @@ class Recorder:
         return last_checkpoint(self.directory, mesh.n_cells, mesh.n_edges, latest=latest)
 
     def _require_unchanged(self) -> None:
-        """Raise `SetupError` where another run wrote to the directory since this one looked at it."""
+        """Raise `InputError` where another run wrote to the directory since this one looked at it."""
         if not self._began and run_to_go_on_with(self.directory, self._overwrite, self._resume) != self._found:
-            raise SetupError(f"{self.directory} was written to by another run meanwhile; start again")
+            raise InputError(f"{self.directory} was written to by another run meanwhile; start again")
         self._began = True
 
     @contextmanager
@@ -172,13 +172,13 @@ class Recorder:
         self._make_directory()
         with held(self.directory) as free:
             if not free:
-                raise SetupError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
+                raise InputError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
             self._require_unchanged()
             try:
                 self._open(now())
                 yield
                 self._close()
-            except SetupError:
+            except InputError:
                 self._close()  # the files are not those of a run to go on with, and stay as they are
                 raise
             except BaseException as error:
@@ -223,7 +223,7 @@ class Recorder:
         try:
             place_of(self.directory).mkdir(parents=True, exist_ok=True)
         except OSError as error:
-            raise SetupError(
+            raise InputError(
                 f"{self.directory} cannot be made ({error.strerror or error}); choose another directory"
             ) from error
 
@@ -319,7 +319,7 @@ def _description(run: RunDescription) -> dict[str, object]:
     try:
         as_recorded = recorded(run.parameters)
     except (TypeError, ValueError, RecursionError) as error:
-        raise SetupError(
+        raise InputError(
             f"the parameters of {run.case_name} cannot be recorded ({error}); give numbers, words, or lists of them"
         ) from error
     return {
@@ -359,27 +359,27 @@ def _shown(value: object) -> str:
 def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:
     """The record of the run in `directory` where it is to be gone on with; None where a run begins there.
 
-    Raises `SetupError` where the directory cannot be used, or holds a run that is neither to be replaced nor to go on.
+    Raises `InputError` where the directory cannot be used, or holds a run that is neither to be replaced nor to go on.
     """
     existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise SetupError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
+        raise InputError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
     if overwrite and resume:
-        raise SetupError("a run is either replaced or gone on with, not both; leave out --force or --resume")
+        raise InputError("a run is either replaced or gone on with, not both; leave out --force or --resume")
     present = [path for name in (*FILES, PATTERN) for path in directory.glob(name)]
     for path in present:
         if not path.is_file():
-            raise SetupError(f"{path} is no file, but a run has a file of that name; choose another directory")
+            raise InputError(f"{path} is no file, but a run has a file of that name; choose another directory")
     if overwrite:
         return None
     before = read_record(directory)
     if before is None and present:
-        raise SetupError(
+        raise InputError(
             f"{directory} holds {present[0].name}, but no {RECORD_FILE} of a run; choose another directory, or replace "
             "what it holds (--force)"
         )
     if before is not None and not resume:
-        raise SetupError(
+        raise InputError(
             f"{directory} holds a run already; choose another directory, go on with it (--resume) or replace it "
             "(--force)"
         )
@@ -387,14 +387,14 @@ def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[st
 
 
 def days_of(record: dict[str, object], directory: Path) -> float:
-    """Days that a run was to last according to its `record`; raise `SetupError` where that does not tell."""
+    """Days that a run was to last according to its `record`; raise `InputError` where that does not tell."""
     return _number_in(record, "days", directory)
 
 
 def _number_in(record: dict[str, object], name: str, directory: Path) -> float:
     value = record.get(name)
     if not isinstance(value, int | float) or not 0.0 <= value < float("inf"):
-        raise SetupError(
+        raise InputError(
             f"{directory / RECORD_FILE} does not tell the {name.replace('_', ' ')} of the run; start anew (--force)"
         )
     return float(value)

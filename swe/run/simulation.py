@@ -24,7 +24,7 @@ from swe.diagnostics.invariants import Invariants, measure_invariants
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, check_field
 from swe.equations.soundness import has_negative_kites, problem_at_vertices, problem_with_state, warning_of_vertices
-from swe.errors import RunError, RunStopped, SetupError, SetupWarning
+from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.output.recorder import Moment, Recorder, RunDescription, start_hash
 from swe.run.memory import return_freed_memory
 from swe.run.progress import ProgressBar
@@ -116,7 +116,7 @@ class Simulation:
 
     Raises
     ------
-    SetupError
+    InputError
         Where an option is out of range, the case gives no sound fields, the initial thickness is not positive, the
         directory cannot be used, or the run to go on with was made with another mesh, case or option.
     """
@@ -149,7 +149,7 @@ class Simulation:
             dissipation,
         )
         options.require_suitable(case.name, case.prescribed_wind)
-        directory = None if output is None else plain_path("output", output, SetupError)
+        directory = None if output is None else plain_path("output", output, InputError)
         self.case = case
         self.mesh = mesh.scaled(case.radius)
         options.require_suitable_mesh(self.mesh)
@@ -192,26 +192,26 @@ class Simulation:
         )
 
     def _initial_state(self, sampling: Sampling) -> State:
-        """The state at time zero; raises `SetupError` where it is not sound."""
+        """The state at time zero; raises `InputError` where it is not sound."""
         case, mesh = self.case, self.mesh
         state = _asked(case, case.initial_state, mesh, sampling)
         if not isinstance(state, State):
-            raise SetupError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
+            raise InputError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
         check_field("initial thickness", state.thickness, mesh.n_cells)
         check_field("initial normal velocity", state.normal_velocity, mesh.n_edges)
         problem = problem_with_state(mesh, state)
         if problem:
-            raise SetupError(f"the initial {problem}; correct the parameters of {case.name}")
+            raise InputError(f"the initial {problem}; correct the parameters of {case.name}")
         problem = problem_at_vertices(mesh, state.thickness) if self._kites_matter else None
         if problem:
-            raise SetupError(f"the initial {problem}")
+            raise InputError(f"the initial {problem}")
         return state
 
     def _require_finite_integrals(self) -> None:
-        """Raise `SetupError` where a global integral is beyond the numbers, so that no change of it can be told."""
+        """Raise `InputError` where a global integral is beyond the numbers, so that no change of it can be told."""
         for name, value in vars(self.initial_invariants).items():
             if not np.isfinite(value):
-                raise SetupError(
+                raise InputError(
                     f"the initial {name.replace('_', ' ')} is {value:g}, beyond the range of numbers; correct the "
                     f"parameters of {self.case.name}"
                 )
@@ -231,7 +231,7 @@ class Simulation:
         """Largest step up to the default Courant number that divides `interval`."""
         per_second = self.model.courant_number(self.state, 1.0)
         if not np.isfinite(per_second):
-            raise SetupError(f"the waves of {self.case.name} are too fast for numbers; correct its parameters")
+            raise InputError(f"the waves of {self.case.name} are too fast for numbers; correct its parameters")
         # Where nothing moves, under a prescribed wind of zero, any step does.
         return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
 
@@ -276,19 +276,19 @@ class Simulation:
         A run that goes on (`resume`) may have another end than before: it then leaves the files of one run to `days`,
         bit for bit, for which it may first go back to the last time that both have in common.
 
-        Raises `SetupError` where `days` is before now, `RunError` where the state ceases to be finite or the thickness
+        Raises `InputError` where `days` is before now, `RunError` where the state ceases to be finite or the thickness
         to be positive, or where output cannot be written, and `RunStopped` between two steps some twentieth of a second
         after Ctrl-C or SIGTERM; a second one interrupts at once. What was written before stays. After all of these but
         `RunStopped`, what the object holds is no state to go on from.
         """
-        days = plain_number("the number of days", days, SetupError)
+        days = plain_number("the number of days", days, InputError)
         end = days * SECONDS_PER_DAY
         if self._broken:
             again = "" if self.recorder is None else ", with resume=True"
-            raise SetupError(f"the run broke off and cannot go on; make the simulation again{again}")
+            raise InputError(f"the run broke off and cannot go on; make the simulation again{again}")
         resumed = self.recorder is not None and self.recorder.resumed
         if not (np.isfinite(end) and (end > self.time or (resumed and end == self.time))):
-            raise SetupError(
+            raise InputError(
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
             )
         self._require_possible_counts(end - self.time)
@@ -339,7 +339,7 @@ class Simulation:
             self.set_back_to(reached.state, reached.time, reached.steps)
 
     def _require_possible_counts(self, seconds: float) -> None:
-        """Raise `SetupError` where the run would never come to its end."""
+        """Raise `InputError` where the run would never come to its end."""
         configuration = self.configuration
         for what, interval in (
             ("snapshot interval", configuration.snapshot_interval),
@@ -348,7 +348,7 @@ class Simulation:
             ("time step", configuration.time_step),
         ):
             if seconds > MOST_EVENTS * interval:
-                raise SetupError(
+                raise InputError(
                     f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
                     f"{seconds / interval:.1g}; give a longer one, or fewer days"
                 )
@@ -419,7 +419,7 @@ def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
     """What `function` of the case gives; a case may be of the user, and fail in any way."""
     try:
         return function(*arguments)
-    except (SetupError, MemoryError):
+    except (InputError, MemoryError):
         raise
     except (Exception, SystemExit) as error:
-        raise SetupError(f"{function.__name__} of {case.name} failed: {error!r}") from error
+        raise InputError(f"{function.__name__} of {case.name} failed: {error!r}") from error

@@ -21,7 +21,7 @@ from mesh.arrays import Array, Index
 from mesh.triangulation.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.kernels import edge_signs_on_cell, edge_signs_on_vertex
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.tiles.tile_kernels import MIRROR, RING, TileArrays
 
 CELLS_PER_TILE = 2560
@@ -91,7 +91,7 @@ def build_tiles(
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them.
 
-    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `SetupError` where the
+    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `InputError` where the
     surroundings of a single cell do not fit.
     """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
@@ -111,7 +111,7 @@ def build_tiles(
     most = LocalSizes(*np.max([list(piece.sizes) for piece in pieces], axis=0).tolist())
     if most.edges > MIRROR:
         if cells_per_tile == 1:
-            raise SetupError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
+            raise InputError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
         return build_tiles(mesh, topography, coriolis, gravity, cells_per_tile // 2)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)

@@ -5,7 +5,7 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from swe.equations.model import ShallowWaterModel
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
@@ -15,13 +15,13 @@ class FusedRungeKutta:
     """Advances a state by classical RK4; computes what `RungeKutta(model.tendency, state)` does, to round-off.
 
     The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files of others equal up to
-    their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `SetupError` where the
+    their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError` where the
     model anticipates potential vorticity, which the loops over tiles do not.
     """
 
     def __init__(self, model: ShallowWaterModel) -> None:
         if model.anticipation > 0.0:
-            raise SetupError(
+            raise InputError(
                 "the fused method does not anticipate potential vorticity; take RungeKutta(model.tendency, ...)"
             )
         self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity)

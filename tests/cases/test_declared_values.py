@@ -8,7 +8,7 @@ import pytest
 from cases import CASES, find_case
 from cases.parameters import parameter_meanings
 from swe import constants
-from swe.errors import SetupError
+from swe.errors import InputError
 
 EARTH = {"radius": (6371220.0, "m"), "gravity": (9.80616, "m/s2"), "rotation_rate": (7.292e-5, "1/s")}
 ROTATION = {"wind_speed": (38.61068276698372, "m/s"), "angle": (0.0, "rad")}
@@ -163,5 +163,5 @@ def test_lake_is_level_and_at_rest() -> None:
     [("williamson1", "bell_radius"), ("williamson5", "radius"), ("williamson5", "gravity")],
 )
 def test_nothing_is_not_positive(name: str, parameter: str) -> None:
-    with pytest.raises(SetupError, match=f"^{parameter} is 0; it must be positive$"):
+    with pytest.raises(InputError, match=f"^{parameter} is 0; it must be positive$"):
         find_case(name, {parameter: 0.0})

@@ -12,7 +12,7 @@ from mesh import VoronoiMesh, build_operators
 from mesh.arrays import Array
 from mesh.discrete.operators import normal_velocity_from_streamfunction
 from swe import Simulation, State
-from swe.errors import SetupError
+from swe.errors import InputError
 
 EVERY = [
     Williamson1(angle=0.7),
@@ -188,12 +188,12 @@ def test_faults_of_a_case_are_told_with_their_place(icosahedral_mesh: VoronoiMes
         (Infinite(), "initial thickness is inf at entity"),
         (Integers(), "initial thickness has numbers of type int64"),
     ):
-        with pytest.raises(SetupError, match=words):
+        with pytest.raises(InputError, match=words):
             Simulation(icosahedral_mesh, case)
 
 
 def test_parameters_must_make_sense() -> None:
-    with pytest.raises(SetupError, match="angle is nan; give a finite number"):
+    with pytest.raises(InputError, match="angle is nan; give a finite number"):
         Williamson2(angle=float("nan"))
-    with pytest.raises(SetupError, match="radius is -1; it must be positive"):
+    with pytest.raises(InputError, match="radius is -1; it must be positive"):
         Williamson2(radius=-1.0)

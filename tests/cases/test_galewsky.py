@@ -5,7 +5,7 @@ import pytest
 from scipy.integrate import quad, simpson
 
 from cases import Galewsky
-from swe.errors import SetupError
+from swe.errors import InputError
 
 STEADY = Galewsky(perturbed=False)
 
@@ -69,5 +69,5 @@ def test_solution_is_known_without_the_bump_only() -> None:
 
 
 def test_edges_the_wrong_way_round_are_refused() -> None:
-    with pytest.raises(SetupError, match=r"edges at 1.3 and 1.122 rad; southern_edge must be less"):
+    with pytest.raises(InputError, match=r"edges at 1.3 and 1.122 rad; southern_edge must be less"):
         replace(STEADY, southern_edge=1.3)

@@ -11,7 +11,7 @@ from cases import Williamson1, Williamson2, find_case
 from cases.parameters import parameter_meanings, split_settings
 from mesh import VoronoiMesh
 from swe import Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 PAGE = Path(__file__).parents[2] / "docs" / "cases.md"
 
@@ -72,17 +72,17 @@ def test_record_of_a_run_makes_its_case_again() -> None:
     ],
 )
 def test_wrong_parameters_are_refused(name: str, setting: str, words: str) -> None:
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         find_case(name, split_settings([setting]))
 
 
 def test_truth_is_no_number() -> None:
-    with pytest.raises(SetupError, match="angle is True; it must be a number"):
+    with pytest.raises(InputError, match="angle is True; it must be a number"):
         find_case("williamson2", {"angle": True})
 
 
 def test_unknown_case_is_refused_with_the_choices() -> None:
-    with pytest.raises(SetupError, match=r"no case named 'tc5'; choose one of williamson1, .*, or FILE.py:CLASS"):
+    with pytest.raises(InputError, match=r"no case named 'tc5'; choose one of williamson1, .*, or FILE.py:CLASS"):
         find_case("tc5")
 
 
@@ -119,7 +119,7 @@ def test_parameter_that_is_no_number_is_kept(splash: Path) -> None:
     splash.write_text(splash.read_text() + '\n@dataclass(frozen=True)\nclass Named(Splash):\n    label: str = "x"\n')
     case = find_case(f"{splash}:Named", {"label": "x", "height": 5.0})
     assert case.parameters()["label"] == "x"
-    with pytest.raises(SetupError, match=r"label of .* is neither a number nor true or false"):
+    with pytest.raises(InputError, match=r"label of .* is neither a number nor true or false"):
         find_case(f"{splash}:Named", {"label": "y"})
 
 
@@ -130,7 +130,7 @@ def test_parameters_that_a_case_of_a_user_cannot_take(splash: Path) -> None:
     )
     line = len(splash.read_text().splitlines())
     words = rf"splash.py:Splash cannot be made with height = 100\.0, line {line}: KeyError\('high'\)"
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         find_case(f"{splash}:Splash", {"height": "100"})
 
 
@@ -198,7 +198,7 @@ def test_case_of_this_package_keeps_its_name(tmp_path: Path) -> None:
 def test_file_without_a_case_is_refused(content: str | None, address: str, words: str, tmp_path: Path) -> None:
     if content is not None:
         (tmp_path / "mine.py").write_text(content)
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         find_case(str(tmp_path / address))
 
 
@@ -222,5 +222,5 @@ mine = Wrapper()
     case = find_case(f"{path}:mine", {"depth": 3.0})
     assert case.name == f"{path}:mine"
     Simulation(icosahedral_mesh, case).run(days=0.1, progress=False)
-    with pytest.raises(SetupError, match="its parameters cannot be changed; change its file"):
+    with pytest.raises(InputError, match="its parameters cannot be changed; change its file"):
         find_case(f"{path}:mine", {"depth": 4.0})

@@ -8,7 +8,7 @@ from mesh import VoronoiMesh
 from mesh.discrete.operators import velocity_at_cells
 from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import SECONDS_PER_DAY
-from swe.errors import SetupError
+from swe.errors import InputError
 
 ANGLES = (0.0, 0.05, np.pi / 2 - 0.05, np.pi / 2)
 
@@ -115,5 +115,5 @@ def test_rossby_haurwitz_wave_has_four_crests() -> None:
         case.thickness(longitude + np.pi / 2, latitude), case.thickness(longitude, latitude), rtol=1e-13
     )
     assert np.abs(case.thickness(longitude + np.pi / 4, latitude) - case.thickness(longitude, latitude)).max() > 500.0
-    with pytest.raises(SetupError, match="wave_number is 0; it must be 1 to 200"):
+    with pytest.raises(InputError, match="wave_number is 0; it must be 1 to 200"):
         replace(case, wave_number=0)

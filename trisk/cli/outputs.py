@@ -4,18 +4,18 @@ import tempfile
 from pathlib import Path
 
 from mesh.safe_files import place_of
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 def require_possible_file(path: Path) -> None:
-    """Raise `SetupError` where no file can be written to `path`."""
+    """Raise `InputError` where no file can be written to `path`."""
     if path.exists() and not path.is_file():
-        raise SetupError(f"{path} cannot be written, as it is there and no file; choose another place")
+        raise InputError(f"{path} cannot be written, as it is there and no file; choose another place")
     try:
         place = place_of(path)
         if not place.parent.is_dir():
-            raise SetupError(f"{path} cannot be written, as there is no such folder; choose another place")
+            raise InputError(f"{path} cannot be written, as there is no such folder; choose another place")
         with tempfile.NamedTemporaryFile(dir=place.parent):
             pass
     except OSError as error:
-        raise SetupError(f"{path} cannot be written ({error.strerror}); choose another place") from error
+        raise InputError(f"{path} cannot be written ({error.strerror}); choose another place") from error

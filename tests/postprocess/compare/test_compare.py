@@ -22,7 +22,7 @@ from postprocess.figures import compare_maps
 from postprocess.reference import stored_references
 from postprocess.runs.reading import read_run
 from swe import Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 DAYS = 1.0
 
@@ -202,7 +202,7 @@ def test_stored_reference_knows_all_days_that_are_asked_for(monkeypatch: pytest.
     with_stored(monkeypatch, Stored(Williamson5()))
     assert isinstance(compare(both, days=[0.5, 1.0]).solution, RunSolution)
     assert compare(both, days=[0.5, 0.0]).days == (0.0, 0.5)
-    with pytest.raises(SetupError, match=r"nothing to compare mountain-162 with: .* is known on day 0\.5, 1;"):
+    with pytest.raises(InputError, match=r"nothing to compare mountain-162 with: .* is known on day 0\.5, 1;"):
         compare(both[:1], days=[0.5, 1.0])
     with_stored(monkeypatch, Stored(Williamson5(), days=(0.0, 0.5)))
     comparison = compare(both, days=[0.5, 0.0])
@@ -225,13 +225,13 @@ def test_reference_file_must_fit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     file.touch()
     with_stored(monkeypatch, Stored(Williamson5()))
     assert compare([Path("mountain-162")], str(file)).days == (0.5,)
-    with pytest.raises(SetupError, match=r"reference\.nc is of case williamson5, but steady-162 of williamson2"):
+    with pytest.raises(InputError, match=r"reference\.nc is of case williamson5, but steady-162 of williamson2"):
         compare([Path("steady-162")], str(file))
     with_stored(monkeypatch, Stored(Williamson5(mountain_height=1000.0)))
-    with pytest.raises(SetupError, match=r"mountain_height = 1000\.0, but mountain-162 has 2000\.0"):
+    with pytest.raises(InputError, match=r"mountain_height = 1000\.0, but mountain-162 has 2000\.0"):
         compare([Path("mountain-162")], str(file))
     with_stored(monkeypatch, Stored(Williamson5(), days=(10.0, 15.0)))
-    with pytest.raises(SetupError, match=r"known on day 10, 15, but the runs have snapshots of day 0\.5, 1 in common"):
+    with pytest.raises(InputError, match=r"known on day 10, 15, but the runs have snapshots of day 0\.5, 1 in common"):
         compare([Path("mountain-162")], str(file))
 
 
@@ -242,13 +242,13 @@ def test_without_the_spectral_package(runs: Path, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setitem(sys.modules, "ducc0", None)
     for name in ("harmonics", "spectral_model", "making", "reference_file"):
         monkeypatch.delitem(sys.modules, f"postprocess.reference.{name}", raising=False)
-    with pytest.raises(SetupError, match="there is nothing to compare mountain-162 with"):
+    with pytest.raises(InputError, match="there is nothing to compare mountain-162 with"):
         compare([Path("mountain-162")])
     (tmp_path / "reference.nc").touch()
     (tmp_path / "williamson5.nc").touch()
     monkeypatch.setattr(stored_references, "FOLDER", tmp_path)
     for reference in (str(tmp_path / "reference.nc"), "auto"):
-        with pytest.raises(SetupError, match=r"need the package ducc0; install .*trisk\[reference\]"):
+        with pytest.raises(InputError, match=r"need the package ducc0; install .*trisk\[reference\]"):
             compare([Path("mountain-162")], reference)
     with pytest.warns(UserWarning, match="the first run is the reference instead"):
         assert isinstance(compare([Path("mountain-162"), Path("mountain-642")]).solution, RunSolution)
@@ -281,7 +281,7 @@ def test_refusals(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
         ([mountain], "auto", (float("nan"),), "mountain-162 has no snapshot of day nan; its days are 0, 0.5, 1"),
         ([mountain], "auto", (-1.0,), "mountain-162 has no snapshot of day -1"),
     ):
-        with pytest.raises(SetupError, match=words):
+        with pytest.raises(InputError, match=words):
             compare(directories, reference, days)
 
 
@@ -327,7 +327,7 @@ def test_exact_solution_that_fails_is_told_in_a_sentence() -> None:
         (solution.vorticity, r"vorticity of williamson2 gives an array of shape \(3,\)"),
         (solution.velocity, "velocity of williamson2 gives tuple; it must give an eastward and a northward velocity"),
     ):
-        with pytest.raises(SetupError, match=words):
+        with pytest.raises(InputError, match=words):
             function(longitude, latitude, 1.0)
 
 

@@ -10,7 +10,7 @@ from mesh import VoronoiMesh
 from postprocess.figures.plots import conservation_figure, field_figure, mesh_figure, plot_run
 from postprocess.runs.reading import read_run
 from swe import Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +47,7 @@ def test_last_snapshot(run_directory: Path) -> None:
 
 
 def test_folder_without_a_run_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(SetupError, match="holds no readable run"):
+    with pytest.raises(InputError, match="holds no readable run"):
         read_run(tmp_path)
 
 

@@ -16,7 +16,7 @@ from postprocess.pages.mesh_report import (
     table1_lines,
 )
 from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures, table1
-from swe.errors import SetupError
+from swe.errors import InputError
 
 BISECTION_SUMS = (9.4734, 7.1572, 6.7839, 7.9061, 7.772)
 SCVT_SUMS = (10.0305, 7.3275, 6.8692, 7.9406, 7.7799)
@@ -47,7 +47,7 @@ def test_table_in_markdown_has_a_pair_of_lines_for_each_level(rows: list[Row]) -
 
 
 def test_levels_beyond_the_table_are_refused() -> None:
-    with pytest.raises(SetupError, match="level 10 is not in Table 1"):
+    with pytest.raises(InputError, match="level 10 is not in Table 1"):
         table1(10, 1e-6)
 
 

@@ -13,7 +13,7 @@ from cases.williamson import Williamson2
 from postprocess.reference.making import MEASURES, REFERENCE_DAYS, Reference, make_reference
 from postprocess.reference.reference_file import ROUNDING, read_reference, stored_reference, write_reference
 from postprocess.reference.stored_references import FOLDER
-from swe.errors import SetupError
+from swe.errors import InputError
 
 LONGITUDE, LATITUDE = np.array([0.1, 2.0, 4.7, 6.0]), np.array([-1.2, 0.4, 0.52, 1.5])
 
@@ -70,10 +70,10 @@ def test_file_keeps_all_but_a_part_of_the_uncertainty(reference: Reference, tmp_
 
 
 def test_refusals(reference: Reference, tmp_path: Path) -> None:
-    with pytest.raises(SetupError, match=r"no day 3; choose among 0\.25, 0\.5"):
+    with pytest.raises(InputError, match=r"no day 3; choose among 0\.25, 0\.5"):
         reference.thickness(LONGITUDE, LATITUDE, 3.0)
     (tmp_path / "garbage.nc").write_text("garbage")
-    with pytest.raises(SetupError, match="no readable reference solution"):
+    with pytest.raises(InputError, match="no readable reference solution"):
         read_reference(tmp_path / "garbage.nc")
     assert stored_reference("lake-at-rest") is None
 
@@ -91,7 +91,7 @@ def test_refusals(reference: Reference, tmp_path: Path) -> None:
 def test_requests_that_make_no_reference(
     name: str, days: tuple[float, ...], truncation: int, damping: float, words: str
 ) -> None:
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         make_reference(find_case(name), days, truncation, damping, "", lambda what, part: None)
 
 
@@ -153,7 +153,7 @@ def test_a_damaged_reference_is_refused(tmp_path: Path, name: str, index: int, v
     shutil.copy(FOLDER / "williamson5.nc", path)
     with netCDF4.Dataset(path, "a") as file:
         file[name][index] = value
-    with pytest.raises(SetupError, match=f"is no readable reference solution .*{words}.*; make one with"):
+    with pytest.raises(InputError, match=f"is no readable reference solution .*{words}.*; make one with"):
         read_reference(path)
 
 
@@ -163,10 +163,10 @@ def test_a_cut_or_mutated_reference_is_read_or_refused(tmp_path: Path, seed: int
     whole = bytearray((FOLDER / "williamson5.nc").read_bytes())
     path = tmp_path / "reference.nc"
     path.write_bytes(whole[: random.integers(len(whole))])
-    with pytest.raises(SetupError, match="is no readable reference solution"):
+    with pytest.raises(InputError, match="is no readable reference solution"):
         read_reference(path)
     for place in random.integers(8000, size=20):
         whole[place] = random.integers(256)
     path.write_bytes(whole)
-    with suppress(SetupError):
+    with suppress(InputError):
         assert np.isfinite(read_reference(path).coefficients).all()

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from postprocess.runs.folders import prepared_folder, require_possible_folder
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 def test_folder_is_made_with_those_above_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -22,13 +22,13 @@ def test_trying_makes_nothing(tmp_path: Path) -> None:
 def test_file_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     for path in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(SetupError, match=f"{path} cannot be .*: {tmp_path}/file is no folder that one can write"):
+        with pytest.raises(InputError, match=f"{path} cannot be .*: {tmp_path}/file is no folder that one can write"):
             prepared_folder(path)
 
 
 def test_folder_that_is_read_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != tmp_path)  # as the superuser may write anyway
-    with pytest.raises(SetupError, match=f"{tmp_path}/below cannot be .*: {tmp_path} is no folder that one can write"):
+    with pytest.raises(InputError, match=f"{tmp_path}/below cannot be .*: {tmp_path} is no folder that one can write"):
         prepared_folder(tmp_path / "below")
 
 
@@ -42,5 +42,5 @@ def test_folder_behind_a_link_that_leads_to_nothing_yet(tmp_path: Path) -> None:
 def test_folder_behind_links_that_go_round(tmp_path: Path) -> None:
     (tmp_path / "link").symlink_to(tmp_path / "other")
     (tmp_path / "other").symlink_to(tmp_path / "link")
-    with pytest.raises(SetupError, match=r"link cannot be made \(Too many levels .*\); choose another place"):
+    with pytest.raises(InputError, match=r"link cannot be made \(Too many levels .*\); choose another place"):
         prepared_folder(tmp_path / "link")

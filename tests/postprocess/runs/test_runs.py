@@ -10,7 +10,7 @@ from cases import Williamson2
 from mesh import MeshError, scvt_mesh
 from postprocess.runs.reading import read_run
 from swe import Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 @pytest.fixture
@@ -27,21 +27,21 @@ def test_time_step_and_number_of_steps(directory: Path) -> None:
 @pytest.mark.parametrize("content", [b"\x89HDF\xff\xfe", b"[]", b"3", b"{}", b'{"parameters": []}', b"{", b""])
 def test_record_that_is_none_is_refused(directory: Path, content: bytes) -> None:
     (directory / "run.json").write_bytes(content)
-    with pytest.raises(SetupError, match=r"run holds no readable run .*; name a directory that a run wrote"):
+    with pytest.raises(InputError, match=r"run holds no readable run .*; name a directory that a run wrote"):
         read_run(directory)
 
 
 def test_record_without_numbers_is_refused(directory: Path) -> None:
     record = json.loads((directory / "run.json").read_text())
     (directory / "run.json").write_text(json.dumps({**record, "steps": "many"}))
-    with pytest.raises(SetupError, match="holds no readable run"):
+    with pytest.raises(InputError, match="holds no readable run"):
         read_run(directory)
 
 
 def test_mesh_of_another_run_is_refused(directory: Path, tmp_path: Path) -> None:
     Simulation(scvt_mesh(162), Williamson2(), tmp_path / "other").run(0.25, progress=False)
     shutil.copy(tmp_path / "other" / "mesh.nc", directory / "mesh.nc")
-    with pytest.raises(SetupError, match=r"history\.nc has 42 values of thickness, but mesh\.nc beside it needs 162;"):
+    with pytest.raises(InputError, match=r"history\.nc has 42 values of thickness, but mesh\.nc beside it needs 162;"):
         read_run(directory)
 
 

@@ -16,7 +16,7 @@ from postprocess.studies.mesh_study import Plan
 from postprocess.studies.study_folder import TABLE_FILE, Row, Task, fitted_order
 from postprocess.studies.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 def silent(line: str) -> None:
@@ -170,7 +170,7 @@ def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) ->
     ],
 )
 def test_plans_that_are_refused(plan: Plan, change: dict, words: str) -> None:
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         dataclasses.replace(plan, **change)
 
 
@@ -185,7 +185,7 @@ def test_time_steps_show_the_orders_of_runge_kutta(icosahedral_mesh: VoronoiMesh
     assert orders["total_energy_change_of_total"] == pytest.approx(5.0, abs=0.5)
     assert [row["time_step_s"] for row in rows] == [300.0, 900.0, 1800.0, 3600.0]
     assert write_time_report(plan, rows, ["trisk"]).read_text().count("<img") == 1
-    with pytest.raises(SetupError, match="a study of time steps needs at least two of them; give --dt more than once"):
+    with pytest.raises(InputError, match="a study of time steps needs at least two of them; give --dt more than once"):
         dataclasses.replace(plan, time_steps=(900.0, 900.0))
 
 

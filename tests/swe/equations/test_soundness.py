@@ -14,7 +14,7 @@ from mesh.arrays import Array
 from swe import RunError, Simulation
 from swe.equations.model import ShallowWaterModel
 from swe.equations.soundness import has_negative_kites, problem_at_vertices, vertex_thickness, warning_of_vertices
-from swe.errors import SetupError, SetupWarning
+from swe.errors import InputError, SetupWarning
 from swe.tiles.fused import FusedRungeKutta
 
 
@@ -49,7 +49,7 @@ def test_thickness_that_is_negative_at_a_vertex_is_refused(obtuse_mesh: VoronoiM
         r"^the initial thickness is -\d.* m at vertex \d+ \(counted from 0\) at longitude .* degrees, the corner of "
         r"cells of .* m: \d+ triangles of the mesh are so obtuse that kites are negative; use a mesh without them"
     )
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         Simulation(obtuse_mesh, Rough())
 
 
@@ -76,7 +76,7 @@ def test_a_warning_before_and_the_right_words_after(obtuse_mesh: VoronoiMesh, tm
         simulation = Simulation(obtuse_mesh, Rough(least=3700.0), tmp_path)
     with pytest.raises(RunError, match=r"the thickness is -?\d.* m at vertex \d+ .*kites are negative"):
         simulation.run(20.0, progress=False)
-    with pytest.raises(SetupError, match="the run broke off and cannot go on; make the simulation again, with resume"):
+    with pytest.raises(InputError, match="the run broke off and cannot go on; make the simulation again, with resume"):
         simulation.run(20.0, progress=False)
 
 
@@ -91,7 +91,7 @@ def test_without_a_directory_there_is_nothing_to_resume(icosahedral_mesh: Vorono
         simulation = Simulation(icosahedral_mesh, Williamson5(), time_step=9000.0)
     with pytest.raises(RunError):
         simulation.run(5.0, progress=False)
-    with pytest.raises(SetupError, match=r"^the run broke off and cannot go on; make the simulation again$"):
+    with pytest.raises(InputError, match=r"^the run broke off and cannot go on; make the simulation again$"):
         simulation.run(5.0, progress=False)
 
 
@@ -100,7 +100,7 @@ def test_the_fused_method_takes_no_model_that_anticipates(icosahedral_mesh: Voro
     model = ShallowWaterModel(plain.mesh, plain.topography, plain.coriolis, plain.gravity)
     with pytest.raises(AttributeError):
         model.anticipation = 1e4  # type: ignore[misc]
-    with pytest.raises(SetupError, match="the fused method does not anticipate potential vorticity"):
+    with pytest.raises(InputError, match="the fused method does not anticipate potential vorticity"):
         FusedRungeKutta(model.anticipating(1e4))
     assert model.anticipation == 0.0
     assert model.anticipating(1e4).anticipation == 1e4

@@ -8,7 +8,7 @@ from mesh import VoronoiMesh, mesh_from_points, read_mesh, write_mesh
 from mesh.discrete.operators import normal_velocity_from_streamfunction, vanishing_edges
 from mesh.geometry.sphere import from_lonlat
 from swe import Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -53,5 +53,5 @@ def test_a_case_runs_on_them(squares: VoronoiMesh, integrator: str) -> None:
 @pytest.mark.parametrize("option", [{"anticipation": 0.5}, {"dissipation": 1e15}])
 def test_what_divides_by_their_length_is_refused(squares: VoronoiMesh, option: dict[str, float]) -> None:
     words = r"^edges of the mesh have no length \(48, the first of them 3, counted from 0\), as four generators lie on"
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         Simulation(squares, Williamson2(), **option)

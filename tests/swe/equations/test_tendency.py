@@ -8,7 +8,7 @@ from mesh import VoronoiMesh, build_operators
 from mesh.discrete.operators import vertex_to_cell
 from swe import ShallowWaterModel, State
 from swe.equations.tendency import tendency
-from swe.errors import SetupError
+from swe.errors import InputError
 
 GRAVITY = 9.8
 
@@ -91,10 +91,10 @@ def test_lake_at_rest_stays_at_rest(any_mesh: VoronoiMesh) -> None:
 
 def test_wrong_fields_are_refused(icosahedral_mesh: VoronoiMesh) -> None:
     cells, vertices = np.zeros(642), np.zeros(1280)
-    with pytest.raises(SetupError, match=r"topography has shape \(1280,\), but the mesh needs \(642,\)"):
+    with pytest.raises(InputError, match=r"topography has shape \(1280,\), but the mesh needs \(642,\)"):
         ShallowWaterModel(icosahedral_mesh, vertices, vertices, GRAVITY)
     cells[3] = np.nan
-    with pytest.raises(SetupError, match="topography is nan at entity 3"):
+    with pytest.raises(InputError, match="topography is nan at entity 3"):
         ShallowWaterModel(icosahedral_mesh, cells, vertices, GRAVITY)
 
 

@@ -9,7 +9,7 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, scvt_mesh
 from swe import RunError, Simulation
-from swe.errors import SetupError, SetupWarning
+from swe.errors import InputError, SetupWarning
 from swe.output.checkpoint import checkpoint_paths, last_checkpoint
 from swe.output.files import DiagnosticsFile, read_series
 from swe.stepping.schedule import Schedule, last_shared
@@ -111,7 +111,7 @@ def test_what_goes_wrong_while_a_run_is_carried_on(
 def test_a_run_does_not_go_back(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
     run_to(small_mesh, tmp_path, 1.01)
     before = kept_files(tmp_path)
-    with pytest.raises(SetupError, match=r"the run stands at day 1\.01 and cannot go to day 1; give a later day"):
+    with pytest.raises(InputError, match=r"the run stands at day 1\.01 and cannot go to day 1; give a later day"):
         run_to(small_mesh, tmp_path, 1.0)
     assert run_to(small_mesh, tmp_path, 1.01).time == 1.01 * 86400.0
     assert kept_files(tmp_path) == before

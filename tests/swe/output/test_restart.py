@@ -14,7 +14,7 @@ import pytest
 from cases import Williamson2, Williamson5
 from mesh import VoronoiMesh, scvt_mesh, write_mesh
 from swe import RunError, Simulation, State
-from swe.errors import RunStopped, SetupError, SetupWarning
+from swe.errors import InputError, RunStopped, SetupWarning
 from swe.output.checkpoint import Checkpoint, checkpoint_paths, last_checkpoint, write_checkpoint
 from swe.output.files import DiagnosticsFile, HistoryFile
 from swe.output.recorder import Recorder
@@ -76,7 +76,7 @@ def test_a_damaged_checkpoint_gives_way_to_the_one_before(tmp_path: Path, damage
     assert last_checkpoint(tmp_path / "elsewhere", 50, 70) is None
     with (
         pytest.warns(SetupWarning, match="is damaged"),
-        pytest.raises(SetupError, match=r"no checkpoint in .* is whole; start anew"),
+        pytest.raises(InputError, match=r"no checkpoint in .* is whole; start anew"),
     ):
         last_checkpoint(tmp_path, 51, 70)
 
@@ -96,7 +96,7 @@ def test_any_bit_of_a_checkpoint_may_be_another(tmp_path: Path) -> None:
             warnings.simplefilter("ignore")
             try:
                 found = last_checkpoint(tmp_path, 2, 1)
-            except SetupError:
+            except InputError:
                 refused += 1
                 continue
         assert found is not None
@@ -125,7 +125,7 @@ def test_a_checkpoint_of_nonsense_is_refused(tmp_path: Path, change: dict[str, n
     np.savez(tmp_path / "checkpoint.0000000001.npz", **good)
     assert last_checkpoint(tmp_path, 2, 1) is not None
     np.savez(tmp_path / "checkpoint.0000000001.npz", **{**good, **change})
-    with pytest.warns(SetupWarning, match="is damaged"), pytest.raises(SetupError, match="no checkpoint"):
+    with pytest.warns(SetupWarning, match="is damaged"), pytest.raises(InputError, match="no checkpoint"):
         last_checkpoint(tmp_path, 2, 1)
 
 
@@ -175,16 +175,16 @@ def test_files_that_lost_rows_are_refused(icosahedral_mesh: VoronoiMesh, tmp_pat
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b").run(days=0.3, progress=False)
     (tmp_path / "a" / "diagnostics.nc").write_bytes((tmp_path / "b" / "diagnostics.nc").read_bytes())
     record = (tmp_path / "a" / "run.json").read_bytes()
-    with pytest.raises(SetupError, match=r"diagnostics.nc is not what its run had written, 5 rows"):
+    with pytest.raises(InputError, match=r"diagnostics.nc is not what its run had written, 5 rows"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a", resume=True).run(days=1, progress=False)
     history = tmp_path / "b" / "history.nc"
     whole = history.read_bytes()
     for content in (whole[: len(whole) // 2], whole[:-8], b"text", (tmp_path / "b" / "diagnostics.nc").read_bytes()):
         history.write_bytes(content)
-        with pytest.raises(SetupError, match=r"history.nc .*start anew"):
+        with pytest.raises(InputError, match=r"history.nc .*start anew"):
             Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(days=0.3, progress=False)
     history.unlink()
-    with pytest.raises(SetupError, match=r"history.nc cannot be opened to go on"):
+    with pytest.raises(InputError, match=r"history.nc cannot be opened to go on"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(days=0.3, progress=False)
     assert (tmp_path / "a" / "run.json").read_bytes() == record
 
@@ -196,26 +196,26 @@ def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp
     def resumed(mesh: VoronoiMesh = icosahedral_mesh, case: object = None, **options: object) -> Simulation:
         return Simulation(mesh, case or Williamson5(), tmp_path, resume=True, **{**OPTIONS, **options})
 
-    with pytest.raises(SetupError, match="holds a run on another mesh; give the same options"):
+    with pytest.raises(InputError, match="holds a run on another mesh; give the same options"):
         resumed(mesh=scvt_mesh(162))
-    with pytest.raises(SetupError, match="holds a run with case = williamson5, not williamson2"):
+    with pytest.raises(InputError, match="holds a run with case = williamson5, not williamson2"):
         resumed(case=Williamson2())
-    with pytest.raises(SetupError, match=r"holds a run with wind speed = 20, not 21"):
+    with pytest.raises(InputError, match=r"holds a run with wind speed = 20, not 21"):
         resumed(case=Williamson5(wind_speed=21.0))
     for name, value in (
         *(("time_step", 900.0), ("snapshot_interval", 3600.0), ("diagnostics_interval", 7200.0)),
         *(("integrator", "rrk4"), ("anticipation", 0.5), ("dissipation", 1e14), ("sampling", "mean")),
     ):
-        with pytest.raises(SetupError, match=f"holds a run with {name.replace('_', ' ')} = .*, not .*; give the same"):
+        with pytest.raises(InputError, match=f"holds a run with {name.replace('_', ' ')} = .*, not .*; give the same"):
             resumed(**{name: value})
-    with pytest.raises(SetupError, match="leave out --force or --resume"):
+    with pytest.raises(InputError, match="leave out --force or --resume"):
         resumed(overwrite=True)
 
     class Moved(Williamson5):
         def coriolis_on(self, mesh: VoronoiMesh) -> np.ndarray:
             return 1.001 * super().coriolis_on(mesh)
 
-    with pytest.raises(SetupError, match="a run of a case with another start, topography or rotation"):
+    with pytest.raises(InputError, match="a run of a case with another start, topography or rotation"):
         resumed(case=Moved())
     assert before == {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
@@ -228,10 +228,10 @@ def test_other_versions_are_warned_of(icosahedral_mesh: VoronoiMesh, tmp_path: P
     with pytest.warns(SetupWarning, match="begun with other versions of packages"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
     (tmp_path / "run.json").write_text("[1]")
-    with pytest.raises(SetupError, match=r"run\.json is no record of a run; remove it"):
+    with pytest.raises(InputError, match=r"run\.json is no record of a run; remove it"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
     (tmp_path / "run.json").write_text('{"case": ')
-    with pytest.raises(SetupError, match=r"run\.json is no record of a run"):
+    with pytest.raises(InputError, match=r"run\.json is no record of a run"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path)
 
 
@@ -259,10 +259,10 @@ def test_two_runs_do_not_write_to_one_directory(icosahedral_mesh: VoronoiMesh, t
     assert first.recorder is not None
     with (
         first._recording(first.recorder, 1.0),
-        pytest.raises(SetupError, match="is written to by another run just now"),
+        pytest.raises(InputError, match="is written to by another run just now"),
     ):
         second.run(days=1, progress=False)
-    with pytest.raises(SetupError, match="holds a run already"):
+    with pytest.raises(InputError, match="holds a run already"):
         second.run(days=1, progress=False)
     replacing = Simulation(icosahedral_mesh, Williamson5(), tmp_path, overwrite=True)
     replacing.run(days=0.25, progress=False)
@@ -272,13 +272,13 @@ def test_what_is_no_run_is_not_written_over(icosahedral_mesh: VoronoiMesh, tmp_p
     write_mesh(icosahedral_mesh, tmp_path / "mesh.nc")
     content = (tmp_path / "mesh.nc").read_bytes()
     for resume in (False, True):
-        with pytest.raises(SetupError, match=r"holds mesh.nc, but no run.json of a run; choose another directory"):
+        with pytest.raises(InputError, match=r"holds mesh.nc, but no run.json of a run; choose another directory"):
             Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=resume)
     assert (tmp_path / "mesh.nc").read_bytes() == content
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "history.nc").mkdir()
     (tmp_path / "other" / ".notes.part").write_text("of the user")
-    with pytest.raises(SetupError, match="is no file, but a run has a file of that name"):
+    with pytest.raises(InputError, match="is no file, but a run has a file of that name"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other", overwrite=True)
     (tmp_path / "other" / "history.nc").rmdir()
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other").run(days=0.1, progress=False)
@@ -303,7 +303,7 @@ def test_a_run_that_broke_off_is_made_again(
         patch.setattr(HistoryFile, "append", fail_once)
         with pytest.raises(RunError, match="no room"):
             simulation.run(days=1, progress=False)
-    with pytest.raises(SetupError, match="the run broke off and cannot go on; make the simulation again"):
+    with pytest.raises(InputError, match="the run broke off and cannot go on; make the simulation again"):
         simulation.run(days=1, progress=False)
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(1, progress=False)
     assert same_files(tmp_path / "whole", tmp_path / "parts")

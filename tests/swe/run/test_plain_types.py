@@ -14,7 +14,7 @@ from cases import CASES, LakeAtRest, Williamson2, Williamson5, find_case
 from cases.parameters import with_parameters
 from mesh import VoronoiMesh, scvt_mesh
 from swe import RunError, Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 
 HOUR = 3600.0
 
@@ -70,12 +70,12 @@ def test_options_of_any_type_give_the_same_run(small_mesh: VoronoiMesh, tmp_path
     ],
 )
 def test_options_of_no_use_are_named(small_mesh: VoronoiMesh, option: str, value: object, words: str) -> None:
-    with pytest.raises(SetupError, match=f"^{words}"):
+    with pytest.raises(InputError, match=f"^{words}"):
         Simulation(small_mesh, Williamson5(), **{option: value})
 
 
 def test_days_must_be_a_number(small_mesh: VoronoiMesh) -> None:
-    with pytest.raises(SetupError, match=r"^the number of days is '1'; it must be a number$"):
+    with pytest.raises(InputError, match=r"^the number of days is '1'; it must be a number$"):
         Simulation(small_mesh, Williamson5()).run("1")
 
 
@@ -98,7 +98,7 @@ def test_a_run_goes_on_with_parameters_that_are_lists(small_mesh: VoronoiMesh, t
     assert record["parameters"]["heights"] == [1.0, 3.0]
     assert record["day_reached"] == 1.0
     with pytest.raises(
-        SetupError, match=r"holds a run with heights = \[1.0, 3(.0)?\], not \[1.0, 4.0\]; give the same"
+        InputError, match=r"holds a run with heights = \[1.0, 3(.0)?\], not \[1.0, 4.0\]; give the same"
     ):
         Simulation(small_mesh, Listed(heights=(1.0, 4.0)), tmp_path, time_step=HOUR, resume=True)
 
@@ -109,7 +109,7 @@ def test_a_tuple_is_the_list_that_the_record_has() -> None:
 
 def test_parameters_that_cannot_be_recorded_are_named(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
     with pytest.raises(
-        SetupError, match=r"^the parameters of listed cannot be recorded .*; give numbers, words, or lists"
+        InputError, match=r"^the parameters of listed cannot be recorded .*; give numbers, words, or lists"
     ):
         Simulation(small_mesh, Listed(heights=({1j},)), tmp_path / "run")
     assert not (tmp_path / "run").exists()
@@ -117,7 +117,7 @@ def test_parameters_that_cannot_be_recorded_are_named(small_mesh: VoronoiMesh, t
 
 def test_a_mesh_of_another_radius_is_refused(small_mesh: VoronoiMesh) -> None:
     words = r"^the mesh has a radius of 1 m, but williamson2 one of 6371220 m; scale .*, mesh.scaled\(6371220\)$"
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         Williamson2().state_on(small_mesh)
     state = Williamson2().initial_state(small_mesh.scaled(6371220.0 * (1.0 + 1e-12)))
     assert 30.0 < np.abs(state.normal_velocity).max() < 39.0
@@ -129,7 +129,7 @@ def test_extreme_parameters_run_or_are_refused_in_a_sentence(small_mesh: Voronoi
     with np.errstate(all="ignore"), warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for parameter in find_case(name).parameters():
-            with contextlib.suppress(SetupError, RunError):
+            with contextlib.suppress(InputError, RunError):
                 simulation = Simulation(small_mesh, find_case(name, {parameter: value}))
                 simulation.run(0.01, progress=False)
                 assert np.isfinite(list(vars(simulation.invariants).values())).all()
@@ -137,5 +137,5 @@ def test_extreme_parameters_run_or_are_refused_in_a_sentence(small_mesh: Voronoi
 
 def test_integrals_beyond_the_numbers_are_refused(small_mesh: VoronoiMesh) -> None:
     words = "^the initial .* is inf, beyond the range of numbers; correct the parameters of williamson2$"
-    with np.errstate(all="ignore"), pytest.raises(SetupError, match=words):
+    with np.errstate(all="ignore"), pytest.raises(InputError, match=words):
         Simulation(small_mesh, Williamson2(reference_depth=1e295), time_step=1.0)

@@ -11,7 +11,7 @@ import xarray
 from cases import Williamson2, Williamson5
 from mesh import VoronoiMesh
 from swe import RunError, Simulation
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.output.files import FIELDS, SERIES, read_series
 from swe.state import State
 
@@ -128,20 +128,20 @@ def test_interruption_is_recorded(
 
 def test_wrong_requests_are_refused(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     case = Williamson5()
-    with pytest.raises(SetupError, match=r"the time step is -1 s; it must be positive"):
+    with pytest.raises(InputError, match=r"the time step is -1 s; it must be positive"):
         Simulation(icosahedral_mesh, case, time_step=-1.0)
-    with pytest.raises(SetupError, match="the snapshot interval is nan"):
+    with pytest.raises(InputError, match="the snapshot interval is nan"):
         Simulation(icosahedral_mesh, case, snapshot_interval=float("nan"))
-    with pytest.raises(SetupError, match=r"the initial thickness is -.* m in cell .* correct the parameters"):
+    with pytest.raises(InputError, match=r"the initial thickness is -.* m in cell .* correct the parameters"):
         Simulation(icosahedral_mesh, replace(case, mountain_height=7000.0))
-    with pytest.raises(SetupError, match="cannot go to day -2"):
+    with pytest.raises(InputError, match="cannot go to day -2"):
         Simulation(icosahedral_mesh, case).run(days=-2)
     Simulation(icosahedral_mesh, case, tmp_path).run(days=0.1, progress=False)
-    with pytest.raises(SetupError, match="holds a run already"):
+    with pytest.raises(InputError, match="holds a run already"):
         Simulation(icosahedral_mesh, case, tmp_path)
     Simulation(icosahedral_mesh, case, tmp_path, overwrite=True)
     (tmp_path / "file").write_text("")
-    with pytest.raises(SetupError, match="cannot be used as a run directory"):
+    with pytest.raises(InputError, match="cannot be used as a run directory"):
         Simulation(icosahedral_mesh, case, tmp_path / "file" / "run")
 
 
@@ -218,7 +218,7 @@ def test_a_state_of_another_mesh_is_refused(small_mesh: VoronoiMesh, fields, wor
         def initial_state(self, *_: object) -> State:
             return State(*fields)
 
-    with pytest.raises(SetupError, match=words):
+    with pytest.raises(InputError, match=words):
         Simulation(small_mesh, Wrong())
 
 

@@ -10,7 +10,7 @@ from cases import Galewsky, LakeAtRest, Williamson1, Williamson2, Williamson5
 from mesh import VoronoiMesh
 from swe import ShallowWaterModel, Simulation, State
 from swe.diagnostics.invariants import measure_invariants
-from swe.errors import SetupError
+from swe.errors import InputError
 from swe.output.files import read_series
 from swe.stepping.relaxation import Relaxation
 from swe.stepping.steppers import RelaxedSteps
@@ -147,11 +147,11 @@ def test_results_do_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch:
 
 
 def test_schemes_that_make_no_sense_are_refused(icosahedral_mesh: VoronoiMesh) -> None:
-    with pytest.raises(SetupError, match="the wind of williamson1 is prescribed; rrk4"):
+    with pytest.raises(InputError, match="the wind of williamson1 is prescribed; rrk4"):
         Simulation(icosahedral_mesh, Williamson1(), integrator="rrk4")
-    with pytest.raises(SetupError, match="the integrator is 'euler'; it must be 'rk4' or 'rrk4'"):
+    with pytest.raises(InputError, match="the integrator is 'euler'; it must be 'rk4' or 'rrk4'"):
         Simulation(icosahedral_mesh, Williamson5(), integrator="euler")
-    with pytest.raises(SetupError, match="the anticipation is -1; it must be a finite number"):
+    with pytest.raises(InputError, match="the anticipation is -1; it must be a finite number"):
         Simulation(icosahedral_mesh, Williamson5(), anticipation=-1.0)
-    with pytest.raises(SetupError, match="the dissipation is nan; it must be a finite number"):
+    with pytest.raises(InputError, match="the dissipation is nan; it must be a finite number"):
         Simulation(icosahedral_mesh, Williamson5(), dissipation=float("nan"))

@@ -12,7 +12,7 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
 from swe import ShallowWaterModel, Simulation, State
-from swe.errors import RunStopped, SetupError
+from swe.errors import InputError, RunStopped
 from swe.stepping.time_stepping import RungeKutta
 from swe.tiles import cutting as tiles
 from swe.tiles.cutting import build_tiles
@@ -193,7 +193,7 @@ def test_tiles_shrink_until_they_fit(icosahedral_mesh: VoronoiMesh, monkeypatch:
     assert smaller.n_tiles > 3
     assert smaller.most.edges <= 700
     monkeypatch.setattr(tiles, "MIRROR", 5)
-    with pytest.raises(SetupError, match=r"a cell of the mesh has .* edges round it and its neighbours; 5 will do"):
+    with pytest.raises(InputError, match=r"a cell of the mesh has .* edges round it and its neighbours; 5 will do"):
         build_tiles(*arguments)
 
 
