@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 Index = NDArray[np.integer]
+Signs = NDArray[np.int8]
 
 
 def sum_by_index(index: Index, values: Array, size: int) -> Array:

@@ -5,11 +5,12 @@ dimensions, units and meaning. In memory, indices count from 0 and -1 fills what
 """
 
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array, Index, Signs
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,6 +59,23 @@ class Topology:
     def on_ring(self) -> NDArray[np.bool_]:
         """Which entries (n_cells, max_edges) of the ring arrays of cells are edges and not fill."""
         return np.arange(self.max_edges) < self.n_edges_on_cell[:, None]
+
+    @cached_property
+    def edge_signs_on_cell(self) -> Signs:
+        """1 where the normal of `edges_on_cell[c, j]` leaves cell c, -1 where it enters, 0 beyond the ring.
+
+        Also 0 where there is no cell on the other side: nothing flows through such an edge.
+        """
+        ends = self.cells_on_edge[np.where(self.on_ring, self.edges_on_cell, 0)]
+        outward = np.where(ends[:, :, 0] == np.arange(self.n_cells)[:, None], 1, -1)
+        return np.where(self.on_ring & (ends >= 0).all(axis=2), outward, 0).astype(np.int8)
+
+    @cached_property
+    def edge_signs_on_vertex(self) -> Signs:
+        """1 where the normal of `edges_on_vertex[v, j]` runs counter-clockwise round v, else -1; 0 for no edge."""
+        head = self.vertices_on_edge[self.edges_on_vertex, 1]
+        around = np.where(head == np.arange(self.n_vertices)[:, None], 1, -1)
+        return np.where(self.edges_on_vertex >= 0, around, 0).astype(np.int8)
 
 
 @dataclass(frozen=True, eq=False)

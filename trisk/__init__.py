@@ -8,7 +8,7 @@ _PLACES = {
         *("MeshError", "MeshWarning", "Operators", "Quality", "VoronoiMesh", "build_operators", "mesh_from_points"),
         *("mesh_quality", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
     ),
-    "swe": ("InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
+    "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
     "cases": (
         *("CASES", "Case", "Galewsky", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5", "Williamson6"),
         "find_case",

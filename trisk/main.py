@@ -252,7 +252,7 @@ def run(
         resume=resume,
         **options,
     )
-    simulation.run(days, progress=not quiet)
+    simulation.run(until=days, progress=not quiet)
     if not quiet:
         print_run(output)
 

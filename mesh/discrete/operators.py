@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
 from mesh.arrays import Array, Index
+from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -36,7 +37,8 @@ class Operators:
 
 
 def build_operators(mesh: VoronoiMesh) -> Operators:
-    """The operators of `mesh`, in the units of its radius."""
+    """The operators of `mesh`, in the units of its radius; across walls nothing flows and there is no gradient."""
+    mesh = closed_mesh(mesh)
     n_cells, n_edges, n_vertices = mesh.n_cells, mesh.n_edges, mesh.n_vertices
     edge = np.arange(n_edges)
     first, second = mesh.cells_on_edge.T
@@ -45,7 +47,8 @@ def build_operators(mesh: VoronoiMesh) -> Operators:
 
     outflow = _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, n_cells)
     circulation = _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, n_vertices)
-    quarter = 0.25 * mesh.dv_edge * mesh.dc_edge
+    # A wall, whose cells are one, has the share of one cell.
+    quarter = np.where(first == second, 0.125, 0.25) * mesh.dv_edge * mesh.dc_edge
     vertex = np.repeat(np.arange(n_vertices), 3)
     return Operators(
         divergence=_scale_rows(1.0 / mesh.area_cell, outflow),
@@ -140,7 +143,7 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
     """Zonal and meridional velocity at cell centres (n_cells,), from normal velocities (n_edges,).
 
     Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
-    exact for a uniform flow in the plane.
+    exact for a uniform flow in the plane. The normal of a wall points from the cell to the edge or back.
     """
     return _velocity_at_cells(
         normal_velocity,
@@ -148,9 +151,16 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
         mesh.edges_on_cell,
         mesh.cells_on_edge,
         mesh.cell_points,
+        mesh.edge_points,
         mesh.lon_cell,
         mesh.lat_cell,
     )
+
+
+@numba.njit(cache=True)
+def _end(points: Array, edge_points: Array, cell: int, edge: int, axis: int) -> float:
+    """Coordinate of the centre of `cell`, or of the edge where there is none."""
+    return points[cell, axis] if cell >= 0 else edge_points[edge, axis]
 
 
 @numba.njit(cache=True, parallel=True)
@@ -160,6 +170,7 @@ def _velocity_at_cells(
     edges_on_cell: Index,
     cells_on_edge: Index,
     points: Array,
+    edge_points: Array,
     longitude: Array,
     latitude: Array,
 ) -> tuple[Array, Array]:
@@ -172,9 +183,9 @@ def _velocity_at_cells(
         for j in range(n_edges_on_cell[c]):
             edge = edges_on_cell[c, j]
             first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
-            x = points[second, 0] - points[first, 0]
-            y = points[second, 1] - points[first, 1]
-            z = points[second, 2] - points[first, 2]
+            x = _end(points, edge_points, second, edge, 0) - _end(points, edge_points, first, edge, 0)
+            y = _end(points, edge_points, second, edge, 1) - _end(points, edge_points, first, edge, 1)
+            z = _end(points, edge_points, second, edge, 2) - _end(points, edge_points, first, edge, 2)
             length = np.sqrt(x * x + y * y + z * z)
             eastward = (cos_lon * y - sin_lon * x) / length
             northward = (cos_lat * z - sin_lat * (cos_lon * x + sin_lon * y)) / length
@@ -187,6 +198,11 @@ def _velocity_at_cells(
         zonal[c] = (nn * right_east - en * right_north) / determinant
         meridional[c] = (ee * right_north - en * right_east) / determinant
     return zonal, meridional
+
+
+def normal_component(mesh: VoronoiMesh, zonal: Array, meridional: Array) -> Array:
+    """Components along the normals (n_edges,) of vectors at the edges, from their eastward and northward ones."""
+    return zonal * np.cos(mesh.angle_edge) + meridional * np.sin(mesh.angle_edge)
 
 
 def vertex_to_cell(mesh: VoronoiMesh, values: Array) -> Array:

@@ -38,10 +38,13 @@ def mesh_hash(mesh: VoronoiMesh) -> str:
     return digest.hexdigest()
 
 
-def write_mesh(mesh: VoronoiMesh, path: AnyPath, history: str = "", file_format: str = "netcdf4") -> None:
+def write_mesh(
+    mesh: VoronoiMesh, path: AnyPath, history: str = "", file_format: str = "netcdf4", known_hash: str | None = None
+) -> None:
     """Write an MPAS mesh file (MPAS Mesh Specification 1.0) in one of `FORMATS`.
 
-    `history` tells how the mesh was made. Raises `MeshError` where the file cannot be written.
+    `history` tells how the mesh was made; `known_hash` is its `mesh_hash`, where that is known. Raises `MeshError`
+    where the file cannot be written.
     """
     path = Path(path)
     require_format(file_format)
@@ -49,7 +52,8 @@ def write_mesh(mesh: VoronoiMesh, path: AnyPath, history: str = "", file_format:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             file.createDimension("Time", None)  # of no length; some readers of the format ask for it
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
-            file.setncatts(mesh_attributes(mesh, f"{stamp}: {history or 'written by trisk'}"))
+            history = f"{stamp}: {history or 'written by trisk'}"
+            file.setncatts(mesh_attributes(mesh, history, known_hash or mesh_hash(mesh)))
             write_mesh_variables(file, mesh)
             write_generation(file, mesh)
     except (OSError, RuntimeError) as error:
@@ -63,8 +67,8 @@ def require_format(file_format: str) -> None:
         raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
 
 
-def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
-    """Global attributes that MPAS readers expect."""
+def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str, object]:
+    """Global attributes that MPAS readers expect; `identity` is the hash of the mesh."""
     return {
         "on_a_sphere": "YES",
         "sphere_radius": float(mesh.sphere_radius),
@@ -73,7 +77,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str) -> dict[str, object]:
         "Conventions": "MPAS",
         "source": "trisk",
         "history": history,
-        "file_id": mesh_hash(mesh)[:10],
+        "file_id": identity[:10],
         "density_name": mesh.density_name,
     }
 

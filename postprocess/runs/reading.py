@@ -14,14 +14,28 @@ from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
+from swe.diagnostics.outputs import FIELDS
 from swe.errors import InputError
-from swe.output.files import DIAGNOSTICS_FILE, FIELDS, HISTORY_FILE, MESH_FILE, load_record, read_series
+from swe.output.files import DIAGNOSTICS_FILE, HISTORY_FILE, MESH_FILE, load_record, read_series
 
 DAY_TOLERANCE = 1e-6
 """Snapshots less than this apart, in days, are of the same day."""
 
 DAYS_TOLD = 8
 """Errors name all days of a run up to this number of them."""
+
+
+class _Fields(dict[str, Array]):
+    """Fields of a run by name; raises `InputError` for one that the run was not asked to write."""
+
+    def __init__(self, directory: Path, fields: dict[str, Array]) -> None:
+        super().__init__(fields)
+        self._directory = directory
+
+    def __missing__(self, name: str) -> Array:
+        raise InputError(
+            f"{self._directory / HISTORY_FILE} holds no {name}; run it again with {name} among its fields (--fields)"
+        )
 
 
 @dataclass(frozen=True)
@@ -69,9 +83,10 @@ class Run:
     def _read(self, row: int) -> Snapshot:
         with dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
-            snapshot = Snapshot(float(self.days[row]), {name: np.asarray(file[name][row]) for name in FIELDS})
-        wrong = [name for name, values in snapshot.fields.items() if not np.isfinite(values).all()]
-        if wrong or not snapshot.fields["thickness"].min(initial=np.inf) > 0.0:
+            present = {name: np.asarray(file[name][row]) for name in FIELDS if name in file.variables}
+        snapshot = Snapshot(float(self.days[row]), _Fields(self.directory, present))
+        wrong = [name for name, values in present.items() if not np.isfinite(values).all()]
+        if wrong or ("thickness" in present and not present["thickness"].min(initial=np.inf) > 0.0):
             raise InputError(
                 f"{self.directory / HISTORY_FILE} has no sound {wrong[0] if wrong else 'thickness'} on day "
                 f"{snapshot.day:g}; it is damaged, run it again"
@@ -123,7 +138,8 @@ def _require_rows(run: Run) -> None:
 def _require_sizes(snapshot: Snapshot, run: Run) -> None:
     """Raise `InputError` where the fields of `snapshot` are not on the mesh of `run`."""
     places = {"nCells": run.mesh.n_cells, "nEdges": run.mesh.n_edges, "nVertices": run.mesh.n_vertices}
-    for name, (place, *_) in FIELDS.items():
+    for name in snapshot.fields:
+        place = FIELDS[name].place
         if snapshot.fields[name].shape != (places[place],):
             raise InputError(
                 f"{run.directory / HISTORY_FILE} has {snapshot.fields[name].size} values of {name}, but "

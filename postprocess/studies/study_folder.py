@@ -74,9 +74,9 @@ class Task:
     def _run(self, progress: bool) -> None:
         """Go on with the run where the directory holds a part of it, else run it from the start."""
         try:
-            self._simulation(resume=True).run(self.days, progress)
+            self._simulation(resume=True).run(until=self.days, progress=progress)
         except InputError:
-            self._simulation(resume=False).run(self.days, progress)
+            self._simulation(resume=False).run(until=self.days, progress=progress)
 
     def _simulation(self, resume: bool) -> Simulation:
         """The run, to be gone on with or to replace what the directory holds."""

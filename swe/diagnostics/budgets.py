@@ -7,15 +7,16 @@ Thuburn et al. (2009) and Ringler et al. (2010) show which of the terms cancel: 
 of minus the gradient of B against the transport of B by the mass flux. They do so to round-off.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from mesh.arrays import Array
 from swe.equations import kernels
-from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import Diagnosis, ShallowWaterModel
+from swe.equations.terms import Term
+from swe.parallel.folding import folded_sums
 from swe.state import State
 
 RATES = {
@@ -24,7 +25,7 @@ RATES = {
     "potential_enstrophy": ("m s-3", ("coriolis", "anticipation", "dissipation")),
     "absolute_vorticity": ("m2 s-2", ("coriolis", "gradient", "dissipation")),
 }
-"""For each integral the units of its rates and the terms that change it, besides the time step."""
+"""For each integral the units of its rates and what changes it, besides the time step and terms of the user's."""
 
 MEANINGS = {
     "transport": "by the divergence of the mass flux, zero but for round-off",
@@ -48,113 +49,183 @@ def rate_name(integral: str, term: str) -> str:
     return f"{integral}_rate_{term}"
 
 
-def rate_series() -> dict[str, tuple[str, str]]:
-    """Units and meaning of every rate by its name."""
+def rate_series(terms: Iterable[Term] = ()) -> dict[str, tuple[str, str]]:
+    """Units and meaning of every rate by its name, of a model with these `terms`."""
+    terms = tuple(terms)
+    own = {term.name: term.meaning for term in terms}
     return {
-        rate_name(integral, term): (
-            units,
-            f"rate of {integral.replace('_', ' ')} " + (CORIOLIS[integral] if term == "coriolis" else MEANINGS[term]),
+        rate_name(integral, cause): (
+            RATES[integral][0],
+            f"rate of {integral.replace('_', ' ')} "
+            + (CORIOLIS[integral] if cause == "coriolis" else {**own, **MEANINGS}[cause]),
         )
-        for integral, (units, terms) in RATES.items()
-        for term in (*terms, "time")
+        for integral, causes in causes_of_change(terms).items()
+        for cause in (*causes, "time")
     }
 
 
-@dataclass(frozen=True)
-class _Work:
-    """What an acceleration does to the integrals, per second."""
-
-    total_energy: float
-    absolute_vorticity: float
-    potential_enstrophy: float
+def causes_of_change(terms: Iterable[Term]) -> dict[str, tuple[str, ...]]:
+    """For each integral what changes it in a model with these `terms`, besides the time step."""
+    terms = tuple(terms)
+    return {
+        integral: (*causes, *(term.name for term in terms if integral in term.changes and term.name not in causes))
+        for integral, (_, causes) in RATES.items()
+    }
 
 
 def measure_rates(
-    model: ShallowWaterModel,
-    state: State,
-    diagnosis: Diagnosis,
-    tendency: State,
-    dissipation: BiharmonicDissipation | None = None,
+    model: ShallowWaterModel, state: State, diagnosis: Diagnosis, tendency: State, time: float = 0.0
 ) -> dict[str, float]:
-    """Rates of the integrals at `state` by the terms of `RATES`, under the names of the diagnostics file.
+    """Rates of the integrals at `state` and `time`, s, under the names of the diagnostics file.
 
-    `diagnosis` belongs to `state`, and `tendency` is what the run takes its steps with, without `dissipation`. Under a
-    prescribed wind no force acts, and all but the transport of mass is zero.
+    `diagnosis` belongs to `state`, and `tendency` is what the run takes its steps with, without terms that act after
+    steps. Under a prescribed wind no force acts, and all is zero but the transport of mass and what terms do.
     """
-    rates = dict.fromkeys((name for name in rate_series() if not name.endswith("_time")), 0.0)
-    mesh, h, u, q = model.mesh, state.thickness, state.normal_velocity, diagnosis.potential_vorticity
-    bernoulli, of_transport = np.empty(mesh.n_cells), np.empty((kernels.BLOCKS, 3))
-    kernels.bernoulli(h, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
-    kernels.work_of_transport(
-        tendency.thickness,
-        mesh.area_cell,
-        bernoulli,
-        q,
-        mesh.cells_on_vertex,
-        mesh.kite_areas_on_vertex,
-        of_transport,
-    )
-    mass, energy, enstrophy = of_transport.sum(axis=0).tolist()
-    rates["mass_rate_transport"] = mass
-    if model.prescribed_wind:
-        return rates
-    of_forces = np.empty((kernels.BLOCKS, 5))
-    kernels.work_of_forces(
-        h,
-        u,
-        tendency.normal_velocity,
-        bernoulli,
-        q,
-        mesh.cells_on_edge,
-        mesh.edges_on_vertex,
-        model.sign_on_vertex,
-        mesh.dc_edge,
-        mesh.dv_edge,
-        of_forces,
-    )
-    pressure_energy, pressure_vorticity, *coriolis = of_forces.sum(axis=0).tolist()
-    rates["total_energy_rate_exchange"] = pressure_energy + energy
-    rates["absolute_vorticity_rate_gradient"] = pressure_vorticity
-    rates["total_energy_rate_coriolis"], rates["absolute_vorticity_rate_coriolis"] = coriolis[:2]
-    rates["potential_enstrophy_rate_coriolis"] = coriolis[2] + enstrophy
-    if model.anticipation > 0.0:
-        anticipation = _work(model, state, q, model.anticipated_acceleration(state)).potential_enstrophy
-        rates["potential_enstrophy_rate_anticipation"] = anticipation
-        rates["potential_enstrophy_rate_coriolis"] -= anticipation
-    if dissipation is not None:
-        for integral, rate in vars(_work(model, state, q, dissipation.acceleration(u))).items():
-            rates[rate_name(integral, "dissipation")] = rate
+    rates = dict.fromkeys((name for name in rate_series(model.terms) if not name.endswith("_time")), 0.0)
+    bernoulli, q = np.empty(model.mesh.n_cells), diagnosis.potential_vorticity
+    kernels.bernoulli(state.thickness, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
+    transport = _work_of_transport(model, tendency.thickness, bernoulli, q)
+    rates["mass_rate_transport"] = transport.mass
+    if not model.prescribed_wind:
+        gradient, coriolis = _work_of_forces(model, state, tendency.normal_velocity, bernoulli, q)
+        rates["total_energy_rate_exchange"] = gradient.total_energy + transport.total_energy
+        rates["absolute_vorticity_rate_gradient"] = gradient.absolute_vorticity
+        rates["total_energy_rate_coriolis"] = coriolis.total_energy
+        rates["absolute_vorticity_rate_coriolis"] = coriolis.absolute_vorticity
+        rates["potential_enstrophy_rate_coriolis"] = coriolis.potential_enstrophy + transport.potential_enstrophy
+    for term in model.terms:
+        own = model.tendency_of(term, state, time)
+        by_source = _work_of_transport(model, own.thickness, bernoulli, q) if own.thickness.any() else _NONE
+        by_force = _work(model, state, q, own.normal_velocity) if own.normal_velocity.any() else _NONE
+        for integral in term.changes:
+            source, force = getattr(by_source, integral), getattr(by_force, integral)
+            rates[rate_name(integral, term.name)] = source + force
+            if not term.after_steps and (integral == "mass" or not model.prescribed_wind):
+                # What the tendency has of the term was taken for transport and Coriolis force above.
+                _take(rates, integral, "source", source)
+                _take(rates, integral, "force", force)
     return rates
 
 
-def rates_of_time(row: Mapping[str, float], before: Mapping[str, float] | None) -> dict[str, float]:
-    """Rates that the terms do not explain: those of the time step, from a row of diagnostics and the one before.
+_TAKEN_FOR = {
+    "source": {
+        "mass": "transport",
+        "total_energy": "exchange",
+        "potential_enstrophy": "coriolis",
+    },
+    "force": {
+        "total_energy": "coriolis",
+        "potential_enstrophy": "coriolis",
+        "absolute_vorticity": "coriolis",
+    },
+}
+"""Under which cause the part of a term in a tendency is found that is not told apart."""
 
-    They are the mean rates of change in between less the mean of the terms' sums of both rows: all of the former where
-    the terms vanish, else with what the terms varied in between. Zero in the first row.
+
+def _take(rates: dict[str, float], integral: str, part: str, rate: float) -> None:
+    """Take the `rate` of a part of a term from the cause that it was taken for."""
+    if rate != 0.0:
+        rates[rate_name(integral, _TAKEN_FOR[part][integral])] -= rate
+
+
+def rates_of_time(
+    row: Mapping[str, float], before: Mapping[str, float] | None, terms: Iterable[Term] = ()
+) -> dict[str, float]:
+    """Rates that the causes do not explain: those of the time step, from a row of diagnostics and the one before.
+
+    They are the mean rates of change in between less the mean of the causes' sums of both rows: all of the former where
+    the causes vanish, else with what they varied in between. Zero in the first row.
     """
     rates = {}
-    for integral, (_, terms) in RATES.items():
+    for integral, causes in causes_of_change(terms).items():
         rates[rate_name(integral, "time")] = 0.0
         if before is not None:
             change = (row[integral] - before[integral]) / (row["time"] - before["time"])
-            explained = sum(row[rate_name(integral, term)] + before[rate_name(integral, term)] for term in terms)
+            explained = sum(row[rate_name(integral, cause)] + before[rate_name(integral, cause)] for cause in causes)
             rates[rate_name(integral, "time")] = change - 0.5 * explained
     return rates
 
 
+@dataclass(frozen=True)
+class _Work:
+    """What a tendency does to the integrals, per second."""
+
+    mass: float = 0.0
+    total_energy: float = 0.0
+    absolute_vorticity: float = 0.0
+    potential_enstrophy: float = 0.0
+
+
+_NONE = _Work()
+
+
 def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, acceleration: Array) -> _Work:
-    mesh, flux, sums = model.mesh, np.empty(model.mesh.n_edges), np.empty((kernels.BLOCKS, 3))
-    kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, flux)
-    kernels.work_of(
-        acceleration,
-        flux,
-        potential_vorticity,
-        mesh.edges_on_vertex,
-        model.sign_on_vertex,
-        mesh.dc_edge,
-        mesh.dv_edge,
-        sums,
-    )
-    energy, vorticity, enstrophy = sums.sum(axis=0).tolist()
-    return _Work(energy, vorticity, enstrophy)
+    """What an `acceleration` at edges does."""
+    mesh, flux = model.closed, np.empty(model.mesh.n_edges)
+    model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
+
+    def work(coarse: Array, fine: Array, parts: Array) -> None:
+        kernels.work_of(
+            acceleration,
+            flux,
+            potential_vorticity,
+            mesh.edges_on_vertex,
+            model.mesh.edge_signs_on_vertex,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            coarse,
+            fine,
+            parts,
+        )
+
+    energy, vorticity, enstrophy = folded_sums(work, 3, model.entities, model.processes)
+    return _Work(0.0, energy, vorticity, enstrophy)
+
+
+def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bernoulli: Array, q: Array) -> _Work:
+    """What a tendency of thickness at cells does."""
+    mesh = model.closed
+
+    def work(coarse: Array, fine: Array, parts: Array) -> None:
+        kernels.work_of_transport(
+            thickness_tendency,
+            mesh.area_cell,
+            bernoulli,
+            q,
+            mesh.cells_on_vertex,
+            mesh.kite_areas_on_vertex,
+            coarse,
+            fine,
+            parts,
+        )
+
+    mass, energy, enstrophy = folded_sums(work, 3, model.entities, model.processes)
+    return _Work(mass, energy, 0.0, enstrophy)
+
+
+def _work_of_forces(
+    model: ShallowWaterModel, state: State, acceleration: Array, bernoulli: Array, q: Array
+) -> tuple[_Work, _Work]:
+    """What minus the gradient of the Bernoulli function does, and what the rest of the acceleration does."""
+    mesh = model.closed
+    flux = np.empty(model.mesh.n_edges)
+    model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
+
+    def work(coarse: Array, fine: Array, parts: Array) -> None:
+        kernels.work_of_forces(
+            flux,
+            acceleration,
+            bernoulli,
+            q,
+            mesh.cells_on_edge,
+            mesh.edges_on_vertex,
+            model.mesh.edge_signs_on_vertex,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            coarse,
+            fine,
+            parts,
+        )
+
+    energy, vorticity, *others = folded_sums(work, 5, model.entities, model.processes)
+    return _Work(0.0, energy, vorticity, 0.0), _Work(0.0, *others)

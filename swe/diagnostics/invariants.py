@@ -7,7 +7,6 @@ import numpy as np
 
 from swe.equations import kernels
 from swe.equations.model import Diagnosis, ShallowWaterModel
-from swe.parallel.exact_sum import exact_sum, exact_sums
 from swe.state import State
 
 
@@ -52,15 +51,15 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     that of A_v h_v q_v^2/2, absolute vorticity that of A_v (f_v + zeta_v): Ringler et al. (2010), section 3.
     """
     mesh, h, g = model.mesh, state.thickness, model.gravity
-    mass = exact_sum(mesh.area_cell * h)
+    (mass,) = model.processes.exact_sums((mesh.area_cell * h)[None])
     level = _level(model, mass)
     on_cells, on_vertices = np.empty((4, mesh.n_cells)), np.empty((2, mesh.n_vertices))
     kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
     kernels.vorticities(
         mesh.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
     )
-    kinetic, potential, available, of_depth = exact_sums(on_cells)
-    absolute_vorticity, enstrophy = exact_sums(on_vertices)
+    kinetic, potential, available, of_depth = model.processes.exact_sums(on_cells)
+    absolute_vorticity, enstrophy = model.processes.exact_sums(on_vertices)
     return Invariants(
         mass=mass,
         kinetic_energy=kinetic,
@@ -75,7 +74,8 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
 
 def mean_level(model: ShallowWaterModel, state: State) -> float:
     """Height of the level surface over the same mass, m."""
-    return _level(model, exact_sum(model.mesh.area_cell * state.thickness))
+    (mass,) = model.processes.exact_sums((model.mesh.area_cell * state.thickness)[None])
+    return _level(model, mass)
 
 
 def _level(model: ShallowWaterModel, mass: float) -> float:

@@ -3,22 +3,29 @@
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
-from swe.equations.model import ShallowWaterModel
+from swe.equations.terms import Term
+from swe.state import State
 
 
-class BiharmonicDissipation:
-    """Applies the dissipation with the `coefficient` nu, m4/s, after each step of the other terms.
+class BiharmonicDissipation(Term):
+    """Dissipation with the `coefficient` nu, m4/s, after each step, so that what either does to energy is known.
 
     On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u) takes
     energy away, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity stay. Like its parts, curl
     and gradient, lap is consistent in the mean over neighbours, not at every edge.
     """
 
-    def __init__(self, model: ShallowWaterModel, coefficient: float) -> None:
-        mesh = model.mesh
+    name = "dissipation"
+    meaning = "by biharmonic dissipation"
+    changes = ("total_energy", "potential_enstrophy", "absolute_vorticity")
+    after_steps = True
+
+    def __init__(self, mesh: VoronoiMesh, coefficient: float) -> None:
         self.coefficient = coefficient
-        self._model = model
+        self._mesh, self._closed, self._walls = mesh, closed_mesh(mesh), wall_edges(mesh)
         self._divergence = np.empty(mesh.n_cells)
         self._vorticity = np.empty(mesh.n_vertices)
         self._once, self._twice = np.empty(mesh.n_edges), np.empty(mesh.n_edges)
@@ -30,8 +37,13 @@ class BiharmonicDissipation:
         self._twice *= -self.coefficient
         return self._twice
 
-    def apply(self, velocity: Array, time_step: float) -> None:
-        """Add the acceleration over `time_step` seconds to `velocity` in place."""
+    def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
+        """See `Term`."""
+        tendency.normal_velocity[:] += self.acceleration(state.normal_velocity)
+
+    def apply(self, state: State, time_step: float) -> None:
+        """See `Term`."""
+        velocity = state.normal_velocity
         kernels.add_scaled(velocity, time_step, self.acceleration(velocity), velocity)
 
     @property
@@ -41,7 +53,7 @@ class BiharmonicDissipation:
         By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, the gradient
         of curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
         """
-        mesh = self._model.mesh
+        mesh = self._closed
         flow, circulation = mesh.dv_edge / mesh.dc_edge, mesh.dc_edge / mesh.dv_edge
         at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
         at_vertices = circulation[mesh.edges_on_vertex].sum(axis=1) / mesh.area_triangle
@@ -50,19 +62,24 @@ class BiharmonicDissipation:
         return 2.0 / rate if rate > 0.0 else float("inf")
 
     def laplacian(self, velocity: Array, result: Array) -> None:
-        """Write lap u at edges (n_edges,), 1/(m s), into `result`."""
-        model, mesh = self._model, self._model.mesh
+        """Write lap u at edges (n_edges,), 1/(m s), into `result`; zero at walls."""
+        mesh = self._closed
         kernels.thickness_tendency(
             velocity,
             mesh.n_edges_on_cell,
             mesh.edges_on_cell,
-            model.sign_on_cell,
+            self._mesh.edge_signs_on_cell,
             mesh.dv_edge,
             mesh.area_cell,
             self._divergence,
         )
         kernels.relative_vorticity(
-            velocity, mesh.edges_on_vertex, model.sign_on_vertex, mesh.dc_edge, mesh.area_triangle, self._vorticity
+            velocity,
+            mesh.edges_on_vertex,
+            self._mesh.edge_signs_on_vertex,
+            mesh.dc_edge,
+            mesh.area_triangle,
+            self._vorticity,
         )
         kernels.vector_laplacian(
             self._divergence,
@@ -73,3 +90,4 @@ class BiharmonicDissipation:
             mesh.dv_edge,
             result,
         )
+        result[self._walls] = 0.0

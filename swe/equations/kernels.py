@@ -9,26 +9,10 @@ letters are thickness, normal velocity and potential vorticity.
 import numba
 import numpy as np
 
-from mesh.arrays import Array, Index
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.arrays import Array, Index, Signs
+from swe.parallel.folding import NOTHING, add
 
 compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
-
-BLOCKS = 64
-"""Parts in which sums are taken, whatever the number of threads, so that results do not depend on it."""
-
-
-def edge_signs_on_cell(mesh: VoronoiMesh) -> Array:
-    """+1 where the normal of `edges_on_cell[c, j]` leaves cell c, -1 where it enters, 0 beyond the ring."""
-    inside = mesh.on_ring
-    first = mesh.cells_on_edge[np.where(inside, mesh.edges_on_cell, 0), 0]
-    return np.where(inside, np.where(first == np.arange(mesh.n_cells)[:, None], 1.0, -1.0), 0.0)
-
-
-def edge_signs_on_vertex(mesh: VoronoiMesh) -> Array:
-    """+1 where the normal of `edges_on_vertex[v, j]` runs counter-clockwise round vertex v, else -1."""
-    head = mesh.vertices_on_edge[mesh.edges_on_vertex, 1]
-    return np.where(head == np.arange(mesh.n_vertices)[:, None], 1.0, -1.0)
 
 
 @compiled
@@ -40,7 +24,7 @@ def thickness_flux(h: Array, u: Array, cells_on_edge: Index, F: Array) -> None:
 
 @compiled
 def relative_vorticity(
-    u: Array, edges_on_vertex: Index, sign: Array, dc_edge: Array, area_triangle: Array, zeta: Array
+    u: Array, edges_on_vertex: Index, sign: Signs, dc_edge: Array, area_triangle: Array, zeta: Array
 ) -> None:
     """zeta_v = 1/A_v sum_e t_ev u_e d_e at vertices."""
     for v in numba.prange(zeta.size):
@@ -91,7 +75,7 @@ def kinetic_energy(
 
 @compiled
 def thickness_tendency(
-    F: Array, n_edges_on_cell: Index, edges_on_cell: Index, sign: Array, dv_edge: Array, area_cell: Array, dh: Array
+    F: Array, n_edges_on_cell: Index, edges_on_cell: Index, sign: Signs, dv_edge: Array, area_cell: Array, dh: Array
 ) -> None:
     """dh_i/dt = -1/A_i sum_e n_ei l_e F_e at cells."""
     for i in numba.prange(dh.size):
@@ -164,29 +148,32 @@ def energy_along(
     dv_edge: Array,
     dc_edge: Array,
     cells_on_edge: Index,
+    coarse: Array,
+    fine: Array,
     sums: Array,
 ) -> None:
-    """Parts (blocks, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v.
+    """Parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v; see `work_of`.
 
     The increments p and v lead to `h_after` and `u_after`. The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges
     and of g A_i h_i (h_i/2 + height_i) over cells.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
-        first = second = third = 0.0
+        first = second = third = NOTHING
         for e in range(k * u.size // blocks, (k + 1) * u.size // blocks):
             i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
             h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * ((h_after[i] - h[i]) + (h_after[j] - h[j]))
             v = u_after[e] - u[e]
             half = 0.5 * dv_edge[e] * dc_edge[e]
-            first += half * u[e] * (2.0 * h_e * v + p_e * u[e])
-            second += half * v * (h_e * v + 2.0 * p_e * u[e])
-            third += half * v * v * p_e
+            first = add(first, half * u[e] * (2.0 * h_e * v + p_e * u[e]), coarse[0], fine[0])
+            second = add(second, half * v * (h_e * v + 2.0 * p_e * u[e]), coarse[1], fine[1])
+            third = add(third, half * v * v * p_e, coarse[2], fine[2])
         for i in range(k * h.size // blocks, (k + 1) * h.size // blocks):
             p = h_after[i] - h[i]
-            first += g * A[i] * p * (h[i] + height[i])
-            second += 0.5 * g * A[i] * p * p
-        sums[k, 0], sums[k, 1], sums[k, 2] = first, second, third
+            first = add(first, g * A[i] * p * (h[i] + height[i]), coarse[0], fine[0])
+            second = add(second, 0.5 * g * A[i] * p * p, coarse[1], fine[1])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part], sums[k, 2, part] = first[part], second[part], third[part]
 
 
 @compiled
@@ -278,50 +265,64 @@ def work_of(
     F: Array,
     q: Array,
     edges_on_vertex: Index,
-    sign: Array,
+    sign: Signs,
     dc_edge: Array,
     dv_edge: Array,
+    coarse: Array,
+    fine: Array,
     sums: Array,
 ) -> None:
-    """Parts (blocks, 3) of what accelerations a_e do to total energy, absolute vorticity and potential enstrophy.
+    """Parts (blocks, 3, 3) of what accelerations a_e do to total energy, absolute vorticity and potential enstrophy.
 
     The sums of l_e d_e F_e a_e over edges, of the circulation C_v = sum_e t_ev d_e a_e over vertices, and of q_v C_v.
+    Each is folded by `coarse` and `fine` (3,), see `swe.parallel.folding`.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
-        energy = vorticity = enstrophy = 0.0
+        energy = vorticity = enstrophy = NOTHING
         for e in range(k * a.size // blocks, (k + 1) * a.size // blocks):
-            energy += dv_edge[e] * dc_edge[e] * F[e] * a[e]
+            energy = add(energy, dv_edge[e] * dc_edge[e] * F[e] * a[e], coarse[0], fine[0])
         for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
             circulation = 0.0
             for j in range(3):
                 e = edges_on_vertex[v, j]
                 circulation += sign[v, j] * dc_edge[e] * a[e]
-            vorticity += circulation
-            enstrophy += q[v] * circulation
-        sums[k, 0], sums[k, 1], sums[k, 2] = energy, vorticity, enstrophy
+            vorticity = add(vorticity, circulation, coarse[1], fine[1])
+            enstrophy = add(enstrophy, q[v] * circulation, coarse[2], fine[2])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part], sums[k, 2, part] = energy[part], vorticity[part], enstrophy[part]
 
 
 @compiled
 def work_of_transport(
-    dh: Array, A: Array, B: Array, q: Array, cells_on_vertex: Index, kites: Array, sums: Array
+    dh: Array,
+    A: Array,
+    B: Array,
+    q: Array,
+    cells_on_vertex: Index,
+    kites: Array,
+    coarse: Array,
+    fine: Array,
+    sums: Array,
 ) -> None:
-    """Parts (blocks, 3) of what tendencies of thickness do to mass, total energy and potential enstrophy.
+    """Parts (blocks, 3, 3) of what tendencies of thickness do to mass, total energy and potential enstrophy.
 
-    The sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices.
+    The sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices; folded as
+    those of `work_of`.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
-        mass = energy = enstrophy = 0.0
+        mass = energy = enstrophy = NOTHING
         for i in range(k * dh.size // blocks, (k + 1) * dh.size // blocks):
-            mass += A[i] * dh[i]
-            energy += A[i] * B[i] * dh[i]
+            mass = add(mass, A[i] * dh[i], coarse[0], fine[0])
+            energy = add(energy, A[i] * B[i] * dh[i], coarse[1], fine[1])
         for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
             volume = 0.0
             for j in range(3):
                 volume += kites[v, j] * dh[cells_on_vertex[v, j]]
-            enstrophy -= 0.5 * q[v] * q[v] * volume
-        sums[k, 0], sums[k, 1], sums[k, 2] = mass, energy, enstrophy
+            enstrophy = add(enstrophy, -0.5 * q[v] * q[v] * volume, coarse[2], fine[2])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part], sums[k, 2, part] = mass[part], energy[part], enstrophy[part]
 
 
 @compiled
@@ -333,32 +334,33 @@ def bernoulli(h: Array, b: Array, K: Array, g: float, B: Array) -> None:
 
 @compiled
 def work_of_forces(
-    h: Array,
-    u: Array,
+    F: Array,
     du: Array,
     B: Array,
     q: Array,
     cells_on_edge: Index,
     edges_on_vertex: Index,
-    sign: Array,
+    sign: Signs,
     dc_edge: Array,
     dv_edge: Array,
+    coarse: Array,
+    fine: Array,
     sums: Array,
 ) -> None:
-    """Parts (blocks, 5) of what minus the gradient of B, and what else is in du, do: see `work_of`.
+    """Parts (blocks, 5, 3) of what minus the gradient of B, and what else is in du, do: see `work_of`.
 
     To energy and absolute vorticity the former, to these and potential enstrophy the latter. The gradient's share of
     potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
-        energy = vorticity = other_energy = other_vorticity = other_enstrophy = 0.0
-        for e in range(k * u.size // blocks, (k + 1) * u.size // blocks):
+        energy = vorticity = other_energy = other_vorticity = other_enstrophy = NOTHING
+        for e in range(k * du.size // blocks, (k + 1) * du.size // blocks):
             i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
-            outflow = dv_edge[e] * (0.5 * (h[i] + h[j]) * u[e])
+            outflow = dv_edge[e] * F[e]
             drop = B[i] - B[j]
-            energy += outflow * drop
-            other_energy += outflow * (dc_edge[e] * du[e] - drop)
+            energy = add(energy, outflow * drop, coarse[0], fine[0])
+            other_energy = add(other_energy, outflow * (dc_edge[e] * du[e] - drop), coarse[2], fine[2])
         for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
             circulation = other_circulation = 0.0
             for m in range(3):
@@ -366,8 +368,10 @@ def work_of_forces(
                 drop = B[cells_on_edge[e, 0]] - B[cells_on_edge[e, 1]]
                 circulation += sign[v, m] * drop
                 other_circulation += sign[v, m] * (dc_edge[e] * du[e] - drop)
-            vorticity += circulation
-            other_vorticity += other_circulation
-            other_enstrophy += q[v] * other_circulation
-        sums[k, 0], sums[k, 1] = energy, vorticity
-        sums[k, 2], sums[k, 3], sums[k, 4] = other_energy, other_vorticity, other_enstrophy
+            vorticity = add(vorticity, circulation, coarse[1], fine[1])
+            other_vorticity = add(other_vorticity, other_circulation, coarse[3], fine[3])
+            other_enstrophy = add(other_enstrophy, q[v] * other_circulation, coarse[4], fine[4])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part] = energy[part], vorticity[part]
+            sums[k, 2, part], sums[k, 3, part] = other_energy[part], other_vorticity[part]
+            sums[k, 4, part] = other_enstrophy[part]

@@ -1,21 +1,27 @@
 """The equations on one mesh: everything that the tendency and the diagnostics need, apart from any clock."""
 
-import copy
+from collections import Counter
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from mesh.arrays import Array
-from mesh.discrete.operators import vertex_to_cell
+from mesh.arrays import Array, Index
+from mesh.discrete.walls import closed_mesh, wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
+from swe.equations.schemes import RINGLER2010, Scheme
+from swe.equations.terms import Term
 from swe.errors import InputError
-from swe.parallel.exact_sum import exact_sum
+from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
 
 STABLE_COURANT_NUMBER = 2.0 / 3.0**0.5
 """Linear gravity waves on regular hexagons are stable under classical RK4 up to here, see `courant_number`."""
+
+ENTITIES_PER_CELL = 16
+"""More than there are cells, edges and vertices together for each cell: 6 on a sphere, 13 for a hexagon alone."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,10 +36,17 @@ class Diagnosis:
 class ShallowWaterModel:
     """The rotating shallow-water equations over topography on a mesh in metres.
 
+    The tendency is the bracket that all schemes share, with the kinetic energy and the flux of the `scheme`,
+
+        dh_i/dt = -1/A_i sum_e n_ei l_e F_e,      du_e/dt = Q_e - 1/d_e [g (h + b) + K]_1^2,
+
+    plus the sum of the `terms`.
+
     Parameters
     ----------
     mesh
-        Voronoi mesh, scaled to the radius of the sphere (`VoronoiMesh.scaled`).
+        Voronoi mesh, scaled to the radius of the sphere (`VoronoiMesh.scaled`). Cells may be missing beyond its edges
+        (`mesh.discrete.walls`): nothing flows there, and the velocity of a state must be zero.
     topography
         Height of the bottom at cells (n_cells,), m.
     coriolis
@@ -42,61 +55,79 @@ class ShallowWaterModel:
         Acceleration of gravity, m/s2.
     prescribed_wind
         Whether the velocity stays as it is, so that thickness is advected and there are no gravity waves.
+    scheme
+        Kinetic energy and mass flux.
+    terms
+        What is added to the bracket, such as `Anticipation`, `BiharmonicDissipation` or a `Forcing` of the user's.
+    processes
+        Those among which the mesh is divided.
 
     Attributes
     ----------
-    anticipation
-        Seconds by which the tendency anticipates potential vorticity, q_e - anticipation (u . grad q)_e in the Coriolis
-        force (Sadourny and Basdevant 1985); 0 but for a model made by `anticipating`.
-    sign_on_vertex, sign_on_cell
-        Signs of circulations round vertices and of outflows of cells, see `kernels.edge_signs_on_vertex` and
-        `kernels.edge_signs_on_cell`.
+    closed
+        The mesh as loops read it, see `mesh.discrete.walls.closed_mesh`.
     area, bottom_volume, planetary_vorticity_magnitude
-        Area of the sphere, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
+        Area of the mesh, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
         m2/s.
+
+    entities
+        At least the number of cells, edges and vertices of the mesh together.
 
     Raises
     ------
     InputError
-        Where a field has the wrong shape or type or is not finite.
+        Where a field has the wrong shape or type or is not finite, two terms have one name, or one accelerates a
+        prescribed wind.
     """
 
     def __init__(
-        self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, prescribed_wind: bool = False
+        self,
+        mesh: VoronoiMesh,
+        topography: Array,
+        coriolis: Array,
+        gravity: float,
+        prescribed_wind: bool = False,
+        scheme: Scheme = RINGLER2010,
+        terms: Sequence[Term] = (),
+        processes: Processes = ONE_PROCESS,
     ) -> None:
         check_field("topography", topography, mesh.n_cells)
         check_field("coriolis", coriolis, mesh.n_vertices)
+        for name, count in Counter(term.name for term in terms).items():
+            if count > 1:
+                raise InputError(f"{count} terms of the model are named {name}; give each its own name")
+        accelerating = [term.name for term in terms if "absolute_vorticity" in term.changes]
+        if prescribed_wind and accelerating:
+            raise InputError(f"the wind is prescribed, but the term {accelerating[0]} accelerates it; leave it out")
         self.mesh = mesh
         self.topography = topography
         self.coriolis = coriolis
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
-        self._anticipation = 0.0
-        self.area = exact_sum(mesh.area_cell)
-        self.bottom_volume = exact_sum(mesh.area_cell * topography)
-        self.planetary_vorticity_magnitude = exact_sum(mesh.area_triangle * np.abs(coriolis))
-        self.sign_on_vertex = kernels.edge_signs_on_vertex(mesh)
+        self.scheme = scheme
+        self.terms = tuple(terms)
+        self.processes = processes
+        self.closed = closed_mesh(mesh)
+        self.area, self.bottom_volume, cells = processes.exact_sums(
+            np.stack([mesh.area_cell, mesh.area_cell * topography, np.ones(mesh.n_cells)])
+        )
+        (self.planetary_vorticity_magnitude,) = processes.exact_sums((mesh.area_triangle * np.abs(coriolis))[None])
+        self.entities = ENTITIES_PER_CELL * int(cells)
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
 
     @property
-    def anticipation(self) -> float:
-        """Seconds by which the tendency anticipates potential vorticity."""
-        return self._anticipation
+    def terms_in_stages(self) -> tuple[Term, ...]:
+        """Terms that are part of the tendency."""
+        return tuple(term for term in self.terms if not term.after_steps)
 
-    def anticipating(self, seconds: float) -> "ShallowWaterModel":
-        """The same model, with the same arrays, where potential vorticity is anticipated by so many seconds."""
-        other = copy.copy(self)
-        other._anticipation = seconds
-        return other
+    @property
+    def terms_after_steps(self) -> tuple[Term, ...]:
+        """Terms that act after each step."""
+        return tuple(term for term in self.terms if term.after_steps)
 
-    # The plain tendency alone needs these; a run takes the fused path and saves their memory.
-
-    @cached_property
-    def sign_on_cell(self) -> Array:
-        """Signs of outflows of cells (n_cells, max_edges)."""
-        return kernels.edge_signs_on_cell(self.mesh)
+    # The plain tendency alone needs these; a run that takes the fused path saves their memory.
 
     @cached_property
     def _thickness_flux(self) -> Array:
@@ -106,22 +137,48 @@ class ShallowWaterModel:
     def _potential_vorticity_edge(self) -> Array:
         return np.empty(self.mesh.n_edges)
 
-    def tendency(self, state: State, result: State) -> None:
-        """Write the time derivative of `state` into `result`; allocates nothing after the first time."""
+    def tendency(self, state: State, result: State, time: float = 0.0) -> None:
+        """Write the time derivative of `state` at `time`, s, into `result`: the bracket and the terms in stages.
+
+        Allocates nothing after the first time, but for what terms do.
+        """
         self._update_thickness_tendency(state, result)
         if self.prescribed_wind:
             result.normal_velocity.fill(0.0)
         else:
             self._update_velocity_tendency(state, result)
+        for term in self.terms_in_stages:
+            self._add(term, state, time, result)
+
+    def tendency_of(self, term: Term, state: State, time: float = 0.0) -> State:
+        """What `term` alone does to `state` at `time`, s, as a new state per second."""
+        mesh, result = self.mesh, State(np.zeros(self.mesh.n_cells), np.zeros(self.mesh.n_edges))
+        self._update_vorticity(state)
+        q_edge, nothing = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells)
+        term.change_vorticity(state, self._potential_vorticity, q_edge)
+        if q_edge.any():
+            self.scheme.flux(self.closed, state.thickness, state.normal_velocity, self._thickness_flux)
+            self._update_velocity(nothing, nothing, nothing, q_edge, 0.0, result.normal_velocity)
+        self._add(term, state, time, result)
+        return result
+
+    def _add(self, term: Term, state: State, time: float, result: State) -> None:
+        """Add `term` to the tendency; nothing accelerates at walls."""
+        term.add(self.mesh, state, time, result)
+        result.normal_velocity[self._walls] = 0.0
+
+    @cached_property
+    def _walls(self) -> Index:
+        return wall_edges(self.mesh)
 
     def _update_thickness_tendency(self, state: State, result: State) -> None:
-        mesh, F = self.mesh, self._thickness_flux
-        kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, F)
+        mesh, F = self.closed, self._thickness_flux
+        self.scheme.flux(mesh, state.thickness, state.normal_velocity, F)
         kernels.thickness_tendency(
             F,
             mesh.n_edges_on_cell,
             mesh.edges_on_cell,
-            self.sign_on_cell,
+            self.mesh.edge_signs_on_cell,
             mesh.dv_edge,
             mesh.area_cell,
             result.thickness,
@@ -129,59 +186,26 @@ class ShallowWaterModel:
 
     def _update_velocity_tendency(self, state: State, result: State) -> None:
         """Write the time derivative of velocity; the flux of thickness is there already."""
-        mesh, q_edge = self.mesh, self._potential_vorticity_edge
+        q_edge = self._potential_vorticity_edge
         self._update_vorticity(state)
-        kernels.mean_of_vertices(self._potential_vorticity, mesh.vertices_on_edge, q_edge)
-        if self.anticipation > 0.0:
-            self._anticipate(state, q_edge)
+        kernels.mean_of_vertices(self._potential_vorticity, self.mesh.vertices_on_edge, q_edge)
+        for term in self.terms_in_stages:
+            term.change_vorticity(state, self._potential_vorticity, q_edge)
         self._update_kinetic_energy(state)
+        self._update_velocity(
+            state.thickness, self.topography, self._kinetic_energy, q_edge, self.gravity, result.normal_velocity
+        )
+
+    def _update_velocity(self, h: Array, b: Array, K: Array, q_edge: Array, gravity: float, result: Array) -> None:
+        """Write the Coriolis flux of the thickness flux less the gradient of g (h + b) + K."""
+        mesh = self.closed
         kernels.velocity_tendency(
-            state.thickness,
-            self.topography,
-            self._kinetic_energy,
+            h,
+            b,
+            K,
             self._thickness_flux,
             q_edge,
-            self.gravity,
-            mesh.cells_on_edge,
-            mesh.n_edges_on_edge,
-            mesh.edges_on_edge,
-            mesh.weights_on_edge,
-            mesh.dc_edge,
-            result.normal_velocity,
-        )
-
-    def _anticipate(self, state: State, q_edge: Array) -> None:
-        """Take what is anticipated from `q_edge`; potential vorticity at vertices is there already."""
-        mesh, q = self.mesh, self._potential_vorticity
-        kernels.anticipate(
-            state.normal_velocity,
-            q,
-            vertex_to_cell(mesh, q),
-            self.anticipation,
-            mesh.cells_on_edge,
-            mesh.vertices_on_edge,
-            mesh.n_edges_on_edge,
-            mesh.edges_on_edge,
-            mesh.weights_on_edge,
-            mesh.dc_edge,
-            mesh.dv_edge,
-            q_edge,
-        )
-
-    def anticipated_acceleration(self, state: State) -> Array:
-        """What the anticipation adds to the Coriolis force at edges (n_edges,), m/s2."""
-        mesh, F = self.mesh, self._thickness_flux
-        kernels.thickness_flux(state.thickness, state.normal_velocity, mesh.cells_on_edge, F)
-        self._update_vorticity(state)
-        q_edge, nothing, result = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells), np.empty(mesh.n_edges)
-        self._anticipate(state, q_edge)
-        kernels.velocity_tendency(
-            nothing,
-            nothing,
-            nothing,
-            F,
-            q_edge,
-            0.0,
+            gravity,
             mesh.cells_on_edge,
             mesh.n_edges_on_edge,
             mesh.edges_on_edge,
@@ -189,7 +213,6 @@ class ShallowWaterModel:
             mesh.dc_edge,
             result,
         )
-        return result
 
     def diagnose(self, state: State) -> Diagnosis:
         """Fields that follow from `state`, as new arrays."""
@@ -202,25 +225,16 @@ class ShallowWaterModel:
         )
 
     def courant_number(self, state: State, time_step: float) -> float:
-        """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
-
-        Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
-        frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
-        which has no waves, it is the largest |u| dt / d.
-        """
-        if not np.isfinite(state.normal_velocity).all():
-            return float("nan")
-        mesh, waves = self.mesh, not self.prescribed_wind
-        return time_step * kernels.largest_rate(
-            state.thickness, state.normal_velocity, self.gravity, waves, mesh.cells_on_edge, mesh.dc_edge
-        )
+        """See `courant_number`."""
+        own = courant_number(self.closed, state, self.gravity, self.prescribed_wind, time_step)
+        return float(self.processes.largest(np.array([own]))[0])
 
     def _update_vorticity(self, state: State) -> None:
-        mesh = self.mesh
+        mesh = self.closed
         kernels.relative_vorticity(
             state.normal_velocity,
             mesh.edges_on_vertex,
-            self.sign_on_vertex,
+            self.mesh.edge_signs_on_vertex,
             mesh.dc_edge,
             mesh.area_triangle,
             self._vorticity,
@@ -236,16 +250,21 @@ class ShallowWaterModel:
         )
 
     def _update_kinetic_energy(self, state: State) -> None:
-        mesh = self.mesh
-        kernels.kinetic_energy(
-            state.normal_velocity,
-            mesh.n_edges_on_cell,
-            mesh.edges_on_cell,
-            mesh.dc_edge,
-            mesh.dv_edge,
-            mesh.area_cell,
-            self._kinetic_energy,
-        )
+        self.scheme.kinetic_energy(self.closed, state.normal_velocity, self._kinetic_energy)
+
+
+def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_wind: bool, time_step: float) -> float:
+    """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
+
+    Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
+    frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
+    which has no waves, it is the largest |u| dt / d. `mesh` is one without gaps (`closed_mesh`).
+    """
+    if not np.isfinite(state.normal_velocity).all():
+        return float("nan")
+    return time_step * kernels.largest_rate(
+        state.thickness, state.normal_velocity, gravity, not prescribed_wind, mesh.cells_on_edge, mesh.dc_edge
+    )
 
 
 def check_field(name: str, values: Array, size: int) -> None:

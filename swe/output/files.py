@@ -17,15 +17,12 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.conventions import BY_NAME
-from mesh.discrete.operators import velocity_at_cells
 from mesh.files.io import mesh_attributes, write_mesh_variables
 from mesh.safe_files import dataset, netcdf_lock, opened_dataset, written_aside
-from mesh.voronoi_mesh import VoronoiMesh
-from swe.diagnostics.budgets import rate_series, rates_of_time
-from swe.diagnostics.invariants import Changes, Invariants
-from swe.equations.model import Diagnosis, ShallowWaterModel
+from swe.diagnostics.budgets import rate_series
+from swe.diagnostics.outputs import FIELDS, SERIES, TOPOGRAPHY, Evaluation, Field, row_of, series_of
+from swe.equations.model import ShallowWaterModel
 from swe.errors import InputError, RunError
-from swe.state import State
 
 HISTORY_FILE = "history.nc"
 DIAGNOSTICS_FILE = "diagnostics.nc"
@@ -42,39 +39,7 @@ GEOMETRY = frozenset(BY_NAME) - {
 }
 """Mesh arrays repeated in the history file, so that it can be plotted and integrated by itself."""
 
-FIELDS = {
-    "thickness": ("nCells", "m", "thickness of the fluid"),
-    "surface_height": ("nCells", "m", "height of the free surface, thickness plus topography"),
-    "kinetic_energy": ("nCells", "m2 s-2", "kinetic energy per unit mass"),
-    "velocity_zonal": ("nCells", "m s-1", "eastward velocity, least squares over the edges of the cell"),
-    "velocity_meridional": ("nCells", "m s-1", "northward velocity, least squares over the edges of the cell"),
-    "normal_velocity": ("nEdges", "m s-1", "velocity along the normal, from cellsOnEdge 1 to 2"),
-    "relative_vorticity": ("nVertices", "s-1", "relative vorticity"),
-    "potential_vorticity": ("nVertices", "m-1 s-1", "potential vorticity (f + zeta)/h"),
-}
-"""Snapshots: name -> place, units, meaning."""
-
-SERIES = {
-    "mass": ("m3", "integral of thickness"),
-    "mass_change": ("1", "change of mass relative to the initial mass"),
-    "total_energy": ("m5 s-2", "kinetic plus potential energy"),
-    "total_energy_change": ("1", "change of total energy relative to the initial available energy"),
-    "total_energy_change_of_total": ("1", "change of total energy relative to the initial total energy"),
-    "kinetic_energy": ("m5 s-2", "kinetic energy"),
-    "available_potential_energy": ("m5 s-2", "potential energy above that of a level surface"),
-    "potential_enstrophy": ("m s-2", "integral of h q2 / 2"),
-    "potential_enstrophy_change": ("1", "change of potential enstrophy relative to its initial value"),
-    "absolute_vorticity": ("m2 s-1", "integral of f + zeta"),
-    "absolute_vorticity_change": ("1", "change of absolute vorticity relative to the integral of |f|"),
-    "courant_number": ("1", "largest (sqrt(g h) + |u|) dt / d over all edges, |u| dt / d if the wind is prescribed"),
-    "max_speed": ("m s-1", "largest speed sqrt(2 K) over all cells"),
-    **rate_series(),
-}
-"""Diagnostics: name -> units, meaning."""
-
 TIME_COORDINATE = "Time"
-
-SCHEME = "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy"
 
 PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
@@ -83,44 +48,44 @@ COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVerti
 """Where the values at cells, edges and vertices lie, as the CF conventions have it."""
 
 
-def create_history(path: Path, mesh: VoronoiMesh, topography: Array, description: Mapping[str, object]) -> None:
-    """Make a history file without snapshots; raise `RunError` where it cannot be written.
+def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], description: Mapping[str, Any]) -> None:
+    """Make a history file without snapshots, for `fields`; raise `RunError` where it cannot be written.
 
     Attributes name what the `description` of the run tells.
     """
+    mesh = model.mesh
     with _new_file(path) as file:
-        file.setncatts({**mesh_attributes(mesh, "snapshots of a shallow-water run"), **_attributes(description)})
+        identity = mesh_attributes(mesh, "snapshots of a shallow-water run", description["mesh_hash"])
+        file.setncatts({**identity, **_attributes(model, description)})
         write_mesh_variables(file, mesh, GEOMETRY)
         for names in COORDINATES.values():
             longitude, latitude = names.split()
             file[longitude].standard_name, file[latitude].standard_name = "longitude", "latitude"
         _define_time(file)
-        _define(file, "topography", ("nCells",), "m", "height of the bottom")
-        file["topography"][:] = topography
-        for name, (place, units, long_name) in FIELDS.items():
-            _define(file, name, ("Time", place), units, long_name)
+        _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
+        file["topography"][:] = model.topography
+        for name in fields:
+            _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
 
 
-def create_diagnostics(path: Path, description: Mapping[str, object]) -> None:
+def create_diagnostics(path: Path, model: ShallowWaterModel, description: Mapping[str, Any]) -> None:
     """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
     with _new_file(path) as file:
-        file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(description)})
+        file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(model, description)})
         _define_time(file)
-        for name, (units, long_name) in SERIES.items():
-            _define(file, name, ("Time",), units, long_name)
+        for name, series in series_of(model.terms).items():
+            _define(file, name, ("Time",), series.units, series.meaning)
 
 
-def _attributes(description: Mapping[str, object]) -> dict[str, object]:
+def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dict[str, object]:
     """Global attributes that tell which run a file is of; nothing that differs between equal runs."""
-    configuration = description["configuration"]
-    assert isinstance(configuration, dict)
     return {
         "title": f"{description['case']}, a run of the shallow-water model of trisk",
         "case": description["case"],
         "parameters": json.dumps(description["parameters"]),
         "mesh_hash": description["mesh_hash"],
-        "scheme": SCHEME,
-        **configuration,
+        "scheme": model.scheme.source,
+        **description["configuration"],
         "trisk_version": package_versions()["trisk"],
     }
 
@@ -214,68 +179,35 @@ def _cut_off(path: Path, rows: int, size: int) -> None:
 
 
 class HistoryFile(_TimeFile):
-    """Snapshots, written one by one."""
+    """Snapshots of some `fields`, written one by one."""
 
-    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
-        super().__init__(path, FIELDS, rows, size)
+    def __init__(self, path: Path, fields: tuple[str, ...], rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, fields, rows, size)
+        self._fields = fields
 
-    def append(self, time: float, model: ShallowWaterModel, state: State, diagnosis: Diagnosis) -> None:
-        """Write the snapshot of `state` and of what follows from it at `time`, seconds since the start."""
-        zonal, meridional = velocity_at_cells(model.mesh, state.normal_velocity)
-        fields = {
-            **vars(diagnosis),
-            "thickness": state.thickness,
-            "surface_height": state.thickness + model.topography,
-            "normal_velocity": state.normal_velocity,
-            "velocity_zonal": zonal,
-            "velocity_meridional": meridional,
-            "time": np.array(time),
-        }
-        self._write({name: values[None] for name, values in fields.items()})
+    def append(self, now: Evaluation) -> None:
+        """Write the snapshot of a state."""
+        fields = {name: FIELDS[name].value(now) for name in self._fields}
+        self._write({name: values[None] for name, values in {**fields, "time": np.array(now.time)}.items()})
 
 
 class DiagnosticsFile(_TimeFile):
-    """Time series of invariants and of what limits the time step; rows wait for each other for up to a second."""
+    """Time series, named by `names`; rows wait for each other for up to a second."""
 
-    def __init__(self, path: Path, rows: int | None = None, size: int = 0) -> None:
-        super().__init__(path, SERIES, rows, size)
+    def __init__(self, path: Path, names: Iterable[str] = SERIES, rows: int | None = None, size: int = 0) -> None:
+        names = tuple(names)
+        super().__init__(path, names, rows, size)
         self._waiting: list[dict[str, float]] = []
         self._written = clock.monotonic()
         self._last: dict[str, float] | None = None
         if self.rows > 0:
             with netcdf_lock:
-                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *SERIES)}
+                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *names)}
 
-    def append(
-        self,
-        time: float,
-        invariants: Invariants,
-        changes: Changes,
-        rates: Mapping[str, float],
-        courant_number: float,
-        max_speed: float,
-    ) -> None:
-        """Add the row of `time`, seconds since the start; `rates` are those of the terms (`measure_rates`)."""
-        row = {
-            "time": time,
-            "mass": invariants.mass,
-            "mass_change": changes.mass,
-            "total_energy": invariants.total_energy,
-            "total_energy_change": changes.total_energy,
-            "total_energy_change_of_total": changes.total_energy_of_total,
-            "kinetic_energy": invariants.kinetic_energy,
-            "available_potential_energy": invariants.available_potential_energy,
-            "potential_enstrophy": invariants.potential_enstrophy,
-            "potential_enstrophy_change": changes.potential_enstrophy,
-            "absolute_vorticity": invariants.absolute_vorticity,
-            "absolute_vorticity_change": changes.absolute_vorticity,
-            "courant_number": courant_number,
-            "max_speed": max_speed,
-            **rates,
-        }
-        row.update(rates_of_time(row, self._last))
-        self._last = row
-        self._waiting.append(row)
+    def append(self, now: Evaluation) -> None:
+        """Add the row of a state."""
+        self._last = row_of(now, self._last)
+        self._waiting.append(self._last)
         if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()
 
@@ -332,6 +264,12 @@ def package_versions() -> dict[str, str]:
     return versions
 
 
+def _define_field(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], field: Field) -> None:
+    _define(file, name, dimensions, field.units, field.meaning)
+    if field.standard_name:
+        file[name].standard_name = field.standard_name
+
+
 def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
     variable = file.createVariable(name, "f8", dimensions)
     variable.setncatts({"units": units, "long_name": long_name})
@@ -357,4 +295,6 @@ def read_series(path: Path) -> dict[str, Array]:
     """All series of a diagnostics file by name, `time` among them; runs of earlier versions have no rates."""
     with dataset(path) as file:
         optional = set(rate_series()) - set(file.variables)
-        return {name: np.asarray(file[name][:]) for name in ("time", *SERIES) if name not in optional}
+        names = ["time", *(name for name in SERIES if name not in optional)]
+        of_terms = [name for name in file.variables if name not in (*names, TIME_COORDINATE)]
+        return {name: np.asarray(file[name][:]) for name in (*names, *of_terms)}

@@ -1,28 +1,19 @@
 """What a run leaves in its directory, and how it goes on from there."""
 
-import hashlib
 import os
 import time as clock
 import warnings
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numba
-import numpy as np
 
 from mesh.errors import MeshError
-from mesh.files.io import mesh_hash, write_mesh
-from mesh.plain import recorded
+from mesh.files.io import write_mesh
 from mesh.safe_files import held, place_of, remove_leftovers
-from mesh.voronoi_mesh import VoronoiMesh
-from swe.configuration import Configuration
 from swe.constants import SECONDS_PER_DAY
-from swe.diagnostics.budgets import measure_rates
-from swe.diagnostics.invariants import Invariants, measure_invariants, relative_changes
-from swe.equations.dissipation import BiharmonicDissipation
-from swe.equations.model import ShallowWaterModel
+from swe.diagnostics.outputs import Evaluation, series_of
 from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.output.checkpoint import (
     PATTERN,
@@ -32,6 +23,7 @@ from swe.output.checkpoint import (
     remove_superseded,
     write_checkpoint,
 )
+from swe.output.description import ABSENT, Moment, RunDescription, described, difference
 from swe.output.files import (
     DIAGNOSTICS_FILE,
     HISTORY_FILE,
@@ -45,44 +37,12 @@ from swe.output.files import (
     read_record,
     write_record,
 )
-from swe.state import State
-from swe.stepping.time_stepping import Tendency
-
-
-@dataclass(frozen=True, eq=False)
-class RunDescription:
-    """What is written of a run that does not change in its course, and what its diagnostics are made with.
-
-    `start_hash` is what the function of that name gives, taken before the first step, as states change in place.
-    """
-
-    case_name: str
-    parameters: dict[str, float]
-    configuration: Configuration
-    model: ShallowWaterModel
-    dissipation: BiharmonicDissipation | None
-    start_hash: str
-    initial_invariants: Invariants
-
-    @property
-    def mesh(self) -> VoronoiMesh:
-        """The mesh, scaled to the radius of the case."""
-        return self.model.mesh
-
-
-@dataclass(frozen=True, eq=False)
-class Moment:
-    """Where a run stands: seconds since its start, steps taken, state, Courant number, and what gives the tendency."""
-
-    time: float
-    steps: int
-    state: State
-    courant_number: float
-    tendency: Tendency
 
 
 class Recorder:
     """Writes snapshots, diagnostics, checkpoints and the record of a run.
+
+    `early_end` says, in words, why a run ended before its time, if it did.
 
     Raises `InputError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
     go on, or one to go on with that was made otherwise.
@@ -94,7 +54,7 @@ class Recorder:
         self._days_before: float | None = None
         self._seconds_before = 0.0
         self._run = run
-        self._description = _description(run)
+        self._description = described(run)
         self._versions = package_versions()
         self._history: HistoryFile | None = None
         self._diagnostics: DiagnosticsFile | None = None
@@ -103,6 +63,7 @@ class Recorder:
         self._overwrite, self._resume = overwrite, resume
         self._found = run_to_go_on_with(directory, overwrite, resume)
         self._began = False
+        self.early_end = ""
         if self._found is not None:
             self._require_same(self._found)
 
@@ -114,9 +75,9 @@ class Recorder:
     def _require_same(self, before: dict[str, object]) -> None:
         """Raise `InputError` where the run of an earlier record was made otherwise; take over its days and time."""
         for name, now in self._description.items():
-            then = before.get(name)
+            then = before.get(name, ABSENT.get(name))
             if then != now:
-                raise InputError(f"{self.directory} holds {_difference(name, then, now)}; {HOW_TO_GO_ON}")
+                raise InputError(f"{self.directory} holds {difference(name, then, now)}; {HOW_TO_GO_ON}")
         if before.get("versions") != self._versions:
             warnings.warn(
                 f"{self.directory} was begun with other versions of packages; its files may differ in the last digits",
@@ -187,24 +148,26 @@ class Recorder:
                 raise
             if shared == now().time:
                 remove_superseded(self.directory, now().steps)
-            self._end(now(), "completed")
+            self._end(now(), "stopped" if self.early_end else "completed", self.early_end)
 
     def _open(self, moment: Moment) -> None:
         """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
         remove_leftovers(self.directory, (*FILES, PATTERN))
         history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
         starting, reached = moment.steps == 0, self._reached
+        run, series = self._run, series_of(self._run.model.terms)
         if starting:
             remove_checkpoints(self.directory)
             (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
             self._write_status(moment, "running")
-            create_history(history, self._run.mesh, self._run.model.topography, self._description)
-            create_diagnostics(diagnostics, self._description)
+            create_history(history, run.model, run.fields, self._description)
+            create_diagnostics(diagnostics, run.model, self._description)
         if reached is None:
-            self._history, self._diagnostics = HistoryFile(history), DiagnosticsFile(diagnostics)
+            self._history = HistoryFile(history, run.fields)
+            self._diagnostics = DiagnosticsFile(diagnostics, series)
         else:
-            self._history = HistoryFile(history, reached.snapshots, reached.history_size)
-            self._diagnostics = DiagnosticsFile(diagnostics, reached.rows, reached.diagnostics_size)
+            self._history = HistoryFile(history, run.fields, reached.snapshots, reached.history_size)
+            self._diagnostics = DiagnosticsFile(diagnostics, series, reached.rows, reached.diagnostics_size)
             remove_checkpoints(self.directory, after=reached.steps)
             self._reached = None
         self._write_status(moment, "running")
@@ -215,7 +178,8 @@ class Recorder:
 
     def _write_mesh(self) -> None:
         try:
-            write_mesh(self._run.mesh, self.directory / MESH_FILE, f"mesh of a run of {self._run.case_name}")
+            history, known = f"mesh of a run of {self._run.case_name}", str(self._description["mesh_hash"])
+            write_mesh(self._run.mesh, self.directory / MESH_FILE, history, known_hash=known)
         except MeshError as error:
             raise RunError(str(error)) from error
 
@@ -233,22 +197,18 @@ class Recorder:
         assert self._diagnostics is not None
         if not (snapshot or diagnostics):
             return
-        run, model, state = self._run, self._run.model, moment.state
-        diagnosis = model.diagnose(state)
+        now = Evaluation(
+            self._run.model,
+            moment.state,
+            moment.time,
+            moment.courant_number,
+            moment.tendency,
+            self._run.initial_invariants,
+        )
         if snapshot:
-            self._history.append(moment.time, model, state, diagnosis)
+            self._history.append(now)
         if diagnostics:
-            tendency = state.empty_like()
-            moment.tendency(state, tendency)
-            invariants = measure_invariants(model, state, diagnosis)
-            self._diagnostics.append(
-                moment.time,
-                invariants,
-                relative_changes(run.initial_invariants, invariants),
-                measure_rates(model, state, diagnosis, tendency, run.dissipation),
-                moment.courant_number,
-                float(np.sqrt(2.0 * diagnosis.kinetic_energy.max())),
-            )
+            self._diagnostics.append(now)
 
     def checkpoint(self, moment: Moment, shared: bool = False) -> None:
         """Write a checkpoint, after all that comes before it; see `write_checkpoint`."""
@@ -281,7 +241,7 @@ class Recorder:
         try:
             self._close()
         except RunError:
-            if status == "completed":
+            if status in ("completed", "stopped"):
                 raise
         if self.directory.is_dir():
             self._write_status(moment, status, reason)
@@ -296,6 +256,7 @@ class Recorder:
             "wall_seconds": self._seconds_before + clock.perf_counter() - self._begun,
             "threads": numba.get_num_threads(),
             "cells": self._run.mesh.n_cells,
+            "loops": self._run.loops,
             **self._description,
             "versions": self._versions,
         }
@@ -312,48 +273,6 @@ class Recorder:
 FILES = (RECORD_FILE, MESH_FILE, HISTORY_FILE, DIAGNOSTICS_FILE)
 
 HOW_TO_GO_ON = "give the same options, or another directory"
-
-
-def _description(run: RunDescription) -> dict[str, object]:
-    """What a run must have in common with the one that it goes on from, as the record has it."""
-    try:
-        as_recorded = recorded(run.parameters)
-    except (TypeError, ValueError, RecursionError) as error:
-        raise InputError(
-            f"the parameters of {run.case_name} cannot be recorded ({error}); give numbers, words, or lists of them"
-        ) from error
-    return {
-        "mesh_hash": mesh_hash(run.mesh),
-        "case": run.case_name,
-        "parameters": as_recorded,
-        "configuration": asdict(run.configuration),
-        "start_hash": run.start_hash,
-    }
-
-
-def start_hash(model: ShallowWaterModel, state: State) -> str:
-    """SHA-256, in hexadecimal, of the initial `state`, the topography and the Coriolis parameter."""
-    digest = hashlib.sha256(np.float64(model.gravity).tobytes())
-    for values in (*vars(state).values(), model.topography, model.coriolis):
-        digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()
-
-
-def _difference(name: str, then: object, now: object) -> str:
-    """What is different between the run that a directory holds and the one that is asked for, as part of a sentence."""
-    if isinstance(then, dict) and isinstance(now, dict):
-        for key in (*now, *then):
-            if then.get(key) != now.get(key):
-                return _difference(key, then.get(key), now.get(key))
-    if name == "mesh_hash":
-        return "a run on another mesh"
-    if name == "start_hash":
-        return "a run of a case with another start, topography or rotation"
-    return f"a run with {name.replace('_', ' ')} = {_shown(then)}, not {_shown(now)}"
-
-
-def _shown(value: object) -> str:
-    return f"{value:.15g}" if isinstance(value, float | int) else str(value)
 
 
 def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:

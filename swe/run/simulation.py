@@ -2,13 +2,11 @@
 
 import os
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, nullcontext
-from typing import Any, Protocol
 
 import numpy as np
 
-from mesh.arrays import Array
 from mesh.integrals.quadrature import Sampling
 from mesh.plain import plain_number, plain_path
 from mesh.voronoi_mesh import VoronoiMesh
@@ -21,62 +19,36 @@ from swe.configuration import (
 )
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.invariants import Invariants, measure_invariants
-from swe.equations.dissipation import BiharmonicDissipation
-from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, check_field
-from swe.equations.soundness import has_negative_kites, problem_at_vertices, problem_with_state, warning_of_vertices
+from swe.diagnostics.outputs import chosen_fields
+from swe.equations.soundness import problem_at_vertices, problem_with_state
 from swe.errors import InputError, RunError, RunStopped, SetupWarning
-from swe.output.recorder import Moment, Recorder, RunDescription, start_hash
+from swe.output.description import Moment, RunDescription, start_hash
+from swe.output.recorder import Recorder
+from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
+from swe.run.composition import (
+    DEFAULT_COURANT_NUMBER,
+    build_model,
+    default_time_step,
+    require_keeping_energy,
+    warnings_before,
+)
 from swe.run.memory import return_freed_memory
 from swe.run.progress import ProgressBar
 from swe.run.signals import StopRequest, stop_requests
 from swe.run.threads import worthwhile_threads
+from swe.run.watch import Callback, Watch
 from swe.state import State
 from swe.stepping.relaxation import Relaxation
-from swe.stepping.schedule import Schedule, dividing_step, last_shared
-from swe.stepping.steppers import DissipatingMethod, FixedSteps, RelaxedSteps, Stepper
+from swe.stepping.schedule import Schedule, last_shared
+from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
 from swe.stepping.time_stepping import RungeKutta
-from swe.tiles.fused import FusedRungeKutta
-
-DEFAULT_COURANT_NUMBER = 0.8
-"""Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+from swe.tiles.fused import FusedRungeKutta, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two looks at signals and the bar of progress: some twentieth of a second."""
 
 MOST_EVENTS = 1e9
 """Steps, snapshots or rows of a run; more of them take years."""
-
-
-class Case(Protocol):
-    """What a simulation asks of a test case: see `cases.base.Case`."""
-
-    @property
-    def name(self) -> str:
-        """Name by which the case is run."""
-
-    @property
-    def radius(self) -> float:
-        """Radius of the sphere, m."""
-
-    @property
-    def gravity(self) -> float:
-        """Acceleration of gravity, m/s2."""
-
-    @property
-    def prescribed_wind(self) -> bool:
-        """Whether the wind stays as it is at the start, so that only thickness evolves."""
-
-    def initial_state(self, mesh: VoronoiMesh, sampling: Sampling) -> State:
-        """State at time zero, thickness at the centres of cells or the mean over each."""
-
-    def topography_on(self, mesh: VoronoiMesh, sampling: Sampling) -> Array:
-        """Height of the bottom at the centres of cells or the mean over each, m."""
-
-    def coriolis_on(self, mesh: VoronoiMesh) -> Array:
-        """Coriolis parameter at vertices, 1/s."""
-
-    def parameters(self) -> dict[str, float]:
-        """Parameters of the case by name, for the record of the run."""
 
 
 class Simulation:
@@ -108,11 +80,22 @@ class Simulation:
         enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
     dissipation
         Coefficient of the biharmonic dissipation, m4/s, applied after each step.
+    fields
+        Names of the fields that snapshots hold, of `swe.diagnostics.outputs.FIELDS`; all of them by default.
     overwrite
         Whether to replace a run that the directory holds.
     resume
         Whether to go on from the last checkpoint of the run that the directory holds, to the files that the run would
         have left without a stop, bit for bit; from the start where there is no checkpoint.
+
+    Attributes
+    ----------
+    model, method, stepper, recorder
+        The equations with their terms, the Runge-Kutta method, what takes it from one output to the next, and what
+        writes; each is made from the one before, the model from the fields of the case.
+    loops
+        "fused", or "plain" where the model has a term that the fused loops over tiles do not compute: several times
+        slower, with the same results to round-off.
 
     Raises
     ------
@@ -135,6 +118,7 @@ class Simulation:
         integrator: Integrator = "rk4",
         anticipation: float = 0.0,
         dissipation: float = 0.0,
+        fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
     ) -> None:
@@ -149,35 +133,28 @@ class Simulation:
             dissipation,
         )
         options.require_suitable(case.name, case.prescribed_wind)
+        output_fields = chosen_fields(fields)
         directory = None if output is None else plain_path("output", output, InputError)
         self.case = case
-        self.mesh = mesh.scaled(case.radius)
+        self._start = start = case_fields(case, mesh, options.sampling)
+        self.mesh, self.state = start.mesh, start.state
         options.require_suitable_mesh(self.mesh)
-        topography = _asked(case, case.topography_on, self.mesh, options.sampling)
-        coriolis = _asked(case, case.coriolis_on, self.mesh)
-        self.model = ShallowWaterModel(self.mesh, topography, coriolis, case.gravity, case.prescribed_wind)
-        self._kites_matter = has_negative_kites(self.mesh) and not case.prescribed_wind
-        self.state = self._initial_state(options.sampling)
-        self.time = 0.0
-        self.steps = 0
+        require_keeping_energy(options.integrator, start.forcings)
+        self.time, self.steps = 0.0, 0
         self._broken = False
-        step = options.time_step or self._default_time_step(
-            min(options.snapshot_interval, options.diagnostics_interval)
-        )
-        self.configuration = options.with_time_step(step)
+        self.configuration = options.with_time_step(options.time_step or default_time_step(start, options))
         self.checkpoint_interval = options.checkpoint_interval
-        self.initial_courant_number = self.courant_number = self.model.courant_number(self.state, step)
+
+        self.model = build_model(start, self.configuration)
+        self.initial_courant_number = self.courant_number = self._present_courant_number()
         self.initial_invariants = self.invariants
-        self._require_finite_integrals()
-        if options.anticipation > 0.0:
-            self.model = self.model.anticipating(options.anticipation * step)
-        self.dissipation = BiharmonicDissipation(self.model, options.dissipation) if options.dissipation > 0.0 else None
-        self._warn_of_instability()
-        thin = warning_of_vertices(self.mesh, self.state.thickness) if self._kites_matter else None
-        if thin:
-            warnings.warn(thin, SetupWarning, stacklevel=2)
-        self.recorder = None if directory is None else Recorder(self._described(), directory, overwrite, resume)
-        self.method = self._build_method()
+        require_finite_integrals(vars(self.initial_invariants), case.name)
+        for warning in warnings_before(start, self.model, self.configuration, self.initial_courant_number):
+            warnings.warn(warning, SetupWarning, stacklevel=2)
+        self.loops = "fused" if why_not_fused(self.model) is None else "plain"
+        description = self._described(output_fields)
+        self.recorder = None if directory is None else Recorder(description, directory, overwrite, resume)
+        self.method = FusedRungeKutta(self.model) if self.loops == "fused" else self._plain_method()
         self.stepper = self._build_stepper()
         reached = None if self.recorder is None else self.recorder.restore()
         if reached is not None:
@@ -191,31 +168,6 @@ class Simulation:
             f"{self.steps} steps, time step {self.configuration.time_step:g} s{place}>"
         )
 
-    def _initial_state(self, sampling: Sampling) -> State:
-        """The state at time zero; raises `InputError` where it is not sound."""
-        case, mesh = self.case, self.mesh
-        state = _asked(case, case.initial_state, mesh, sampling)
-        if not isinstance(state, State):
-            raise InputError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
-        check_field("initial thickness", state.thickness, mesh.n_cells)
-        check_field("initial normal velocity", state.normal_velocity, mesh.n_edges)
-        problem = problem_with_state(mesh, state)
-        if problem:
-            raise InputError(f"the initial {problem}; correct the parameters of {case.name}")
-        problem = problem_at_vertices(mesh, state.thickness) if self._kites_matter else None
-        if problem:
-            raise InputError(f"the initial {problem}")
-        return state
-
-    def _require_finite_integrals(self) -> None:
-        """Raise `InputError` where a global integral is beyond the numbers, so that no change of it can be told."""
-        for name, value in vars(self.initial_invariants).items():
-            if not np.isfinite(value):
-                raise InputError(
-                    f"the initial {name.replace('_', ' ')} is {value:g}, beyond the range of numbers; correct the "
-                    f"parameters of {self.case.name}"
-                )
-
     def set_back_to(self, state: State, time: float, steps: int) -> None:
         """Go on from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""
         self.state.thickness[:] = state.thickness
@@ -224,101 +176,99 @@ class Simulation:
 
     def set_back_to_start(self) -> None:
         """Go on from the initial state."""
-        self.set_back_to(self._initial_state(self.configuration.sampling), 0.0, 0)
+        start, sampling = self._start, self.configuration.sampling
+        self.set_back_to(initial_state(self.case, self.mesh, sampling, start.kites_matter), 0.0, 0)
         self.courant_number = self.initial_courant_number
 
-    def _default_time_step(self, interval: float) -> float:
-        """Largest step up to the default Courant number that divides `interval`."""
-        per_second = self.model.courant_number(self.state, 1.0)
-        if not np.isfinite(per_second):
-            raise InputError(f"the waves of {self.case.name} are too fast for numbers; correct its parameters")
-        # Where nothing moves, under a prescribed wind of zero, any step does.
-        return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
-
-    def _build_method(self) -> FusedRungeKutta | RungeKutta:
-        """The fused method, or its plain twin where the tendency anticipates potential vorticity."""
-        if self.model.anticipation == 0.0:
-            return FusedRungeKutta(self.model)
-        return RungeKutta(self.model.tendency, self.state)
+    def _plain_method(self) -> RungeKutta:
+        return RungeKutta(self.model.tendency, self.state, exchange=self.model.processes.exchange)
 
     def _build_stepper(self) -> Stepper:
+        terms = self.model.terms_after_steps
         if self.configuration.integrator == "rrk4":
-            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, self.dissipation)
-        if self.dissipation is not None:
-            return FixedSteps(DissipatingMethod(self.method, self.dissipation))
-        return FixedSteps(self.method)
+            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
+        return FixedSteps(SplitMethod(self.method, terms) if terms else self.method)
 
-    def _warn_of_instability(self) -> None:
-        time_step = self.configuration.time_step
-        waves = time_step * STABLE_COURANT_NUMBER / max(self.initial_courant_number, 1e-300)
-        damping = float("inf") if self.dissipation is None else self.dissipation.largest_time_step
-        if time_step > min(waves, damping):
-            cause = (
-                f"the Courant number is {self.initial_courant_number:.3g}"
-                if waves < damping
-                else "it is long for the dissipation"
-            )
-            warnings.warn(
-                f"a time step of {time_step:g} s is likely to be unstable, as {cause}; one of "
-                f"{0.95 * min(waves, damping):.3g} s would do",
-                SetupWarning,
-                stacklevel=3,
-            )
+    def _present_courant_number(self) -> float:
+        return self.model.courant_number(self.state, self.configuration.time_step)
 
     @property
     def invariants(self) -> Invariants:
         """Invariants of the present state."""
         return measure_invariants(self.model, self.state, self.model.diagnose(self.state))
 
-    def run(self, days: float, progress: bool = True) -> None:
-        """Integrate to `days` after the start, writing output on the way.
+    def run(
+        self,
+        days: float | None = None,
+        progress: bool = True,
+        *,
+        until: float | None = None,
+        callbacks: Iterable[Callback] = (),
+        stop_when: Callable[["Simulation"], bool] | None = None,
+    ) -> None:
+        """Integrate for so many `days`, or `until` so many days after the start, writing output on the way.
 
-        A run that goes on (`resume`) may have another end than before: it then leaves the files of one run to `days`,
-        bit for bit, for which it may first go back to the last time that both have in common.
+        A run that goes on (`resume`) may have another end than before: it then leaves the files of one run to that
+        day, bit for bit, for which it may first go back to the last time that both have in common.
 
-        Raises `InputError` where `days` is before now, `RunError` where the state ceases to be finite or the thickness
+        The `callbacks` are called on their schedules, and `stop_when` is asked after each step: once it is true, the
+        run ends there, with a checkpoint from which it can go on. Neither changes the steps that are taken.
+
+        Raises `InputError` where the end is before now, `RunError` where the state ceases to be finite or the thickness
         to be positive, or where output cannot be written, and `RunStopped` between two steps some twentieth of a second
         after Ctrl-C or SIGTERM; a second one interrupts at once. What was written before stays. After all of these but
         `RunStopped`, what the object holds is no state to go on from.
         """
-        days = plain_number("the number of days", days, InputError)
-        end = days * SECONDS_PER_DAY
+        last_day = self._last_day(days, until)
+        end = last_day * SECONDS_PER_DAY
         if self._broken:
             again = "" if self.recorder is None else ", with resume=True"
             raise InputError(f"the run broke off and cannot go on; make the simulation again{again}")
         resumed = self.recorder is not None and self.recorder.resumed
         if not (np.isfinite(end) and (end > self.time or (resumed and end == self.time))):
             raise InputError(
-                f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {days:g}; give a later day"
+                f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {last_day:g}; give a "
+                "later day"
             )
         self._require_possible_counts(end - self.time)
         if self.recorder is not None:
-            self._choose_end(self.recorder, days)
+            self._choose_end(self.recorder, last_day)
+        watch = Watch(self, self.time, callbacks, stop_when)
         with (
             worthwhile_threads(self.mesh.n_cells),
             stop_requests() as request,
-            ProgressBar(self.time / SECONDS_PER_DAY, days, progress) as bar,
+            ProgressBar(self.time / SECONDS_PER_DAY, last_day, progress) as bar,
         ):
-            recording = nullcontext() if self.recorder is None else self._recording(self.recorder, days)
+            recording = nullcontext() if self.recorder is None else self._recording(self.recorder, last_day)
             with recording:
                 self._broken = True
                 try:
-                    self._run_to(end, bar, request)
+                    self._run_to(end, bar, request, watch)
                 except RunStopped:
                     self._broken = False
                     raise
             self._broken = False
 
-    def _described(self) -> RunDescription:
-        """What the recorder must know of the run; to be called before the first step."""
+    def _last_day(self, days: float | None, until: float | None) -> float:
+        """Days after the start at which a run ends that lasts `days` from now, or `until` a day."""
+        if (days is None) == (until is None):
+            raise InputError("give the days that the run goes on, run(days=...), or the day of its end, run(until=...)")
+        if until is not None:
+            return plain_number("the day of the end", until, InputError)
+        return self.time / SECONDS_PER_DAY + plain_number("the number of days", days, InputError)
+
+    def _described(self, fields: tuple[str, ...]) -> RunDescription:
+        """What the recorder must know of the run, whose snapshots hold `fields`; called before the first step."""
         return RunDescription(
             self.case.name,
             self.case.parameters(),
             self.configuration,
             self.model,
-            self.dissipation,
-            start_hash(self.model, self.state),
+            start_hash(self.model, self.state, self._start.forcings),
             self.initial_invariants,
+            fields,
+            tuple(term.name for term in self._start.forcings),
+            self.loops,
         )
 
     def _now(self) -> Moment:
@@ -362,16 +312,16 @@ class Simulation:
         configuration = self.configuration
         return Schedule(configuration.snapshot_interval, end), Schedule(configuration.diagnostics_interval, end)
 
-    def _run_to(self, end: float, bar: ProgressBar, request: StopRequest) -> None:
+    def _run_to(self, end: float, bar: ProgressBar, request: StopRequest, watch: Watch) -> None:
         snapshots, diagnostics = self._schedules(end)
         shared = last_shared((snapshots, diagnostics))
         checkpoints = Schedule(self.checkpoint_interval, float("inf"))
         due = checkpoints.next_after(self.time)
         while self.time < end:
             event = min(snapshots.next_after(self.time), diagnostics.next_after(self.time))
-            self._advance(event)
+            self._advance(event, watch.most_steps(self.time, self.configuration.time_step))
             if self.time == event:
-                self.courant_number = self.model.courant_number(self.state, self.configuration.time_step)
+                self.courant_number = self._present_courant_number()
                 bar.show_courant_number(self.courant_number)
                 if self.recorder is not None:
                     self.recorder.record(self._now(), snapshots.is_due(self.time), diagnostics.is_due(self.time))
@@ -382,6 +332,10 @@ class Simulation:
                 if self.time >= due or request.signal is not None or self.time == end > shared:
                     self.recorder.checkpoint(self._now())
                     due = checkpoints.next_after(self.time)
+            watch.call(self.time)
+            if self.time < end and watch.is_over():
+                self._end_early(watch.reason)
+                return
             if self.time < end:
                 request.raise_if_any(
                     self.time / SECONDS_PER_DAY,
@@ -390,10 +344,16 @@ class Simulation:
                     else f"its checkpoint is in {self.recorder.directory}",
                 )
 
-    def _advance(self, event: float) -> None:
-        """Take some steps towards `event`, seconds, which none passes."""
-        most = max(1, CELL_STEPS_PER_CALL // self.mesh.n_cells)
-        before, start = self.state.copy() if self._kites_matter else None, self.time
+    def _end_early(self, reason: str) -> None:
+        """Keep where the run stands, so that it can go on from there."""
+        if self.recorder is not None:
+            self.recorder.checkpoint(self._now())
+            self.recorder.early_end = reason
+
+    def _advance(self, event: float, most: int) -> None:
+        """Take some steps towards `event`, seconds, which none passes, and no more than `most`."""
+        most = max(1, min(most, CELL_STEPS_PER_CALL // self.mesh.n_cells))
+        before, start = self.state.copy() if self._start.kites_matter else None, self.time
         self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
         self.steps += taken
         if self.stepper.unsound:
@@ -410,16 +370,6 @@ class Simulation:
         """Take the last `steps` steps again from `before`; raise `RunError` where a vertex goes wrong first."""
         for step in range(self.steps - steps + 1, self.steps + 1):
             time, _ = self.stepper.advance(before, time, event, self.configuration.time_step, 1)
-            problem = problem_at_vertices(self.mesh, before.thickness)
+            problem = problem_at_vertices(self.model.closed, before.thickness)
             if problem:
                 raise RunError(f"at day {time / SECONDS_PER_DAY:.3f}, step {step}, the {problem}")
-
-
-def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
-    """What `function` of the case gives; a case may be of the user, and fail in any way."""
-    try:
-        return function(*arguments)
-    except (InputError, MemoryError):
-        raise
-    except (Exception, SystemExit) as error:
-        raise InputError(f"{function.__name__} of {case.name} failed: {error!r}") from error

@@ -10,10 +10,15 @@ so the factor is the root near 1 of a quadratic, whose coefficients are sums of 
 
 import numpy as np
 
+from mesh.arrays import Array
 from swe.diagnostics.invariants import mean_level
 from swe.equations import kernels
 from swe.equations.model import ShallowWaterModel
+from swe.parallel.folding import bounded_sums, folds
 from swe.state import State
+
+EXCESS = 8.0
+"""Times the energy of the start that the terms of its change in a step may add up to, none seen near it."""
 
 NEWTON_STEPS = 4
 """Of the quadratic, whose root differs from 1 by some 1e-3 at the default time step, and by less at shorter ones."""
@@ -29,24 +34,38 @@ class Relaxation:
         self._model = model
         # Mass is conserved, so heights may count from any level; from the mean one their products are small.
         self._height = model.topography - mean_level(model, state)
+        self._folds = np.array([folds(EXCESS * self._energy(state), model.entities)] * 3)
+
+    def _energy(self, state: State) -> float:
+        """An energy, m5/s2, of the size of all that moves: kinetic, and potential without regard to signs."""
+        model, h = self._model, state.thickness
+        terms = np.empty((2, h.size))
+        terms[0] = model.mesh.area_cell * h * model.diagnose(state).kinetic_energy
+        terms[1] = model.gravity * model.mesh.area_cell * h * (h + np.abs(self._height))
+        return sum(model.processes.exact_sums(terms))
 
     def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
         """e_1, e_2 and e_3 of the change of energy along the increment from `state` to `after`, m5/s2."""
-        mesh, sums = self._model.mesh, np.empty((kernels.BLOCKS, 3))
-        kernels.energy_along(
-            state.thickness,
-            state.normal_velocity,
-            after.thickness,
-            after.normal_velocity,
-            self._height,
-            self._model.gravity,
-            mesh.area_cell,
-            mesh.dv_edge,
-            mesh.dc_edge,
-            mesh.cells_on_edge,
-            sums,
-        )
-        first, second, third = sums.sum(axis=0).tolist()
+        model, mesh = self._model, self._model.closed
+
+        def along(coarse: Array, fine: Array, parts: Array) -> None:
+            kernels.energy_along(
+                state.thickness,
+                state.normal_velocity,
+                after.thickness,
+                after.normal_velocity,
+                self._height,
+                model.gravity,
+                mesh.area_cell,
+                mesh.dv_edge,
+                mesh.dc_edge,
+                mesh.cells_on_edge,
+                coarse,
+                fine,
+                parts,
+            )
+
+        first, second, third = bounded_sums(along, self._folds, model.processes)
         return first, second, third
 
     def factor(self, state: State, after: State) -> float:

@@ -1,9 +1,10 @@
-"""From one output time to the next: steps of one length, or scaled by relaxation, with or without dissipation."""
+"""From one output time to the next: steps of one length, or scaled by relaxation, and terms that act after steps."""
 
+from collections.abc import Sequence
 from typing import Protocol
 
-from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.kernels import count_unsound, move_along
+from swe.equations.terms import Term
 from swe.state import State
 from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import equal_step, steps_towards
@@ -22,8 +23,8 @@ class Method(Protocol):
     def unsound(self) -> int:
         """Number of values that are not sound after the last step."""
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
-        """Take up to `steps` steps in place, fewer where one left unsound values; give their number."""
+    def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
+        """Take up to `steps` steps in place from `time`, s, fewer where one left unsound values; give their number."""
 
 
 class Stepper(Protocol):
@@ -54,23 +55,24 @@ class FixedSteps:
     def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
         """See `Stepper`."""
         step, times = steps_towards(time, event, time_step, most)
-        taken = self._method.advance(state, step, len(times))
+        taken = self._method.advance(state, step, len(times), time)
         return times[taken - 1], taken
 
 
-class DissipatingMethod:
-    """A method with dissipation after each of its steps, so that what either does to energy is known by itself."""
+class SplitMethod:
+    """A method with `terms` after each of its steps."""
 
-    def __init__(self, method: Method, dissipation: BiharmonicDissipation) -> None:
+    def __init__(self, method: Method, terms: Sequence[Term]) -> None:
         self._method = method
-        self._dissipation = dissipation
+        self._terms = terms
         self.unsound = 0
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+    def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
         """See `Method`."""
         for taken in range(1, steps + 1):
-            self._method.advance(state, time_step)
-            self._dissipation.apply(state.normal_velocity, time_step)
+            self._method.advance(state, time_step, 1, time + (taken - 1) * time_step)
+            for term in self._terms:
+                term.apply(state, time_step)
             self.unsound = count_unsound(state.thickness, state.normal_velocity)
             if self.unsound:
                 return taken
@@ -80,15 +82,13 @@ class DissipatingMethod:
 class RelaxedSteps:
     """Steps whose increments are scaled so that they keep total energy, and the clock with them.
 
-    What is left to an event is divided into equal steps, anew after each. Dissipation, if any, follows each step.
+    What is left to an event is divided into equal steps, anew after each. The `terms` act after each step.
     """
 
-    def __init__(
-        self, method: Method, relaxation: Relaxation, state: State, dissipation: BiharmonicDissipation | None
-    ) -> None:
+    def __init__(self, method: Method, relaxation: Relaxation, state: State, terms: Sequence[Term] = ()) -> None:
         self._method = method
         self._relaxation = relaxation
-        self._dissipation = dissipation
+        self._terms = terms
         self._after = state.empty_like()
         self.unsound = 0
 
@@ -103,27 +103,27 @@ class RelaxedSteps:
     def _step(self, state: State, time: float, event: float, time_step: float) -> float:
         """One step; gives the time after it."""
         step = equal_step(time, event, time_step)
-        factor = self._try(state, step)
+        factor = self._try(state, step, time)
         following = time + factor * step
         if step == event - time:
-            factor, step = self._land(state, factor, step)
+            factor, step = self._land(state, factor, step, time)
             following = event
         self.unsound = move_along(
             state.thickness, state.normal_velocity, self._after.thickness, self._after.normal_velocity, factor
         )
-        if self._dissipation is not None:
-            self._dissipation.apply(state.normal_velocity, factor * step)
+        for term in self._terms:
+            term.apply(state, factor * step)
             self.unsound = count_unsound(state.thickness, state.normal_velocity)
         return following
 
-    def _try(self, state: State, step: float) -> float:
-        """Find the state after a step of `step` seconds, and give the factor of the increment that leads there."""
+    def _try(self, state: State, step: float, time: float) -> float:
+        """Find the state after `step` seconds from `time`; give the factor of the increment that leads there."""
         self._after.thickness[:] = state.thickness
         self._after.normal_velocity[:] = state.normal_velocity
-        self._method.advance(self._after, step)
+        self._method.advance(self._after, step, 1, time)
         return self._relaxation.factor(state, self._after)
 
-    def _land(self, state: State, factor: float, remaining: float) -> tuple[float, float]:
+    def _land(self, state: State, factor: float, remaining: float, time: float) -> tuple[float, float]:
         """Find the step whose scaled length is `remaining` seconds by secants; gives its factor and length."""
         step, excess = remaining, factor * remaining - remaining
         following = remaining / factor
@@ -131,7 +131,7 @@ class RelaxedSteps:
             if abs(excess) <= LANDED * remaining:
                 break
             before, excess_before, step = step, excess, following
-            factor = self._try(state, step)
+            factor = self._try(state, step, time)
             excess = factor * step - remaining
             if excess != excess_before:
                 following = step - excess * (step - before) / (excess - excess_before)

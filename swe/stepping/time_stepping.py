@@ -4,10 +4,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from swe.equations.kernels import add_scaled, count_unsound
+from swe.parallel.processes import ONE_PROCESS
 from swe.state import State
 
-Tendency = Callable[[State, State], None]
-"""Writes the time derivative of its first argument into its second."""
+Tendency = Callable[[State, State, float], None]
+"""Writes the time derivative of its first argument at a time, s, its third, into its second."""
 
 
 @dataclass(frozen=True)
@@ -16,6 +17,11 @@ class ButcherTableau:
 
     stages: tuple[tuple[float, ...], ...]
     weights: tuple[float, ...]
+
+    @property
+    def nodes(self) -> tuple[float, ...]:
+        """Times of the stages, in parts of a step."""
+        return tuple(sum(coefficients) for coefficients in self.stages)
 
 
 RK4 = ButcherTableau(
@@ -28,30 +34,43 @@ RK4 = ButcherTableau(
 class RungeKutta:
     """Advances a state in place with an explicit method; the slopes are allocated once.
 
+    `exchange` lets the values of other processes arrive in a state before its slope is taken.
     `unsound` is the number of thicknesses that are not positive and of values that are not finite after `advance`.
     """
 
-    def __init__(self, tendency: Tendency, state: State, tableau: ButcherTableau = RK4) -> None:
+    def __init__(
+        self,
+        tendency: Tendency,
+        state: State,
+        tableau: ButcherTableau = RK4,
+        exchange: Callable[[State], None] = ONE_PROCESS.exchange,
+    ) -> None:
         self.tendency = tendency
+        self.exchange = exchange
         self.tableau = tableau
         self.unsound = 0
         self._stage = state.empty_like()
         self._slopes = [state.empty_like() for _ in tableau.weights]
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
-        """Take up to `steps` steps, fewer where one leaves `unsound` values; give their number."""
+    def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
+        """Take up to `steps` steps from `time`, s, fewer where one leaves `unsound` values; give their number."""
         for taken in range(1, steps + 1):
-            self.step(state, time_step)
+            self.step(state, time_step, time + (taken - 1) * time_step)
             self.unsound = count_unsound(state.thickness, state.normal_velocity)
             if self.unsound:
                 return taken
         return steps
 
-    def step(self, state: State, time_step: float) -> None:
-        """Advance `state` by `time_step` seconds."""
-        for coefficients, slope in zip(self.tableau.stages, self._slopes, strict=True):
-            self.tendency(self._combine(state, time_step, coefficients, self._stage), slope)
-        self._combine(state, time_step, self.tableau.weights, state)
+    def step(self, state: State, time_step: float, time: float = 0.0) -> None:
+        """Advance `state` by `time_step` seconds from `time`, s."""
+        tableau = self.tableau
+        for coefficients, node, slope in zip(tableau.stages, tableau.nodes, self._slopes, strict=True):
+            stage = self._combine(state, time_step, coefficients, self._stage)
+            if stage is not state:
+                self.exchange(stage)
+            self.tendency(stage, slope, time + node * time_step)
+        self._combine(state, time_step, tableau.weights, state)
+        self.exchange(state)
 
     def _combine(self, state: State, time_step: float, coefficients: tuple[float, ...], result: State) -> State:
         """Write state + dt sum_i c_i k_i into `result`; give `state` itself where all c_i vanish."""

@@ -17,10 +17,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array, Index, Signs
+from mesh.discrete.walls import closed_mesh
 from mesh.triangulation.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
-from swe.equations.kernels import edge_signs_on_cell, edge_signs_on_vertex
 from swe.errors import InputError
 from swe.tiles.tile_kernels import MIRROR, RING, TileArrays
 
@@ -91,17 +91,20 @@ def build_tiles(
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them.
 
+    Where neighbours are missing, a tile reads an edge of no length, kites of no area and a wall's own cell twice.
     `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `InputError` where the
     surroundings of a single cell do not fit.
     """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
+    signs = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
+    whole, mesh = mesh, closed_mesh(mesh)
     cell_order = _cell_order(mesh, first_cell)
     cell_rank = inverse_order(cell_order)
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
-    cutter = _Cutter(mesh, topography, coriolis, gravity, cell_rank, inverse_order(edge_order))
+    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, cell_rank, inverse_order(edge_order))
     pieces = [
         cutter.cut(
             cell_order[first_cell[tile] : first_cell[tile + 1]], edge_order[first_edge[tile] : first_edge[tile + 1]]
@@ -112,7 +115,7 @@ def build_tiles(
     if most.edges > MIRROR:
         if cells_per_tile == 1:
             raise InputError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
-        return build_tiles(mesh, topography, coriolis, gravity, cells_per_tile // 2)
+        return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
     metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
@@ -145,15 +148,21 @@ class _Cutter:
     """Cuts tiles out of a mesh, one after the other."""
 
     def __init__(
-        self, mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cell_rank: Index, edge_rank: Index
+        self,
+        mesh: VoronoiMesh,
+        signs: tuple[Signs, Signs],
+        topography: Array,
+        coriolis: Array,
+        gravity: float,
+        cell_rank: Index,
+        edge_rank: Index,
     ) -> None:
         self.mesh = mesh
         self.cell_rank, self.edge_rank = cell_rank, edge_rank
         self.potential = gravity * topography
         self.planetary = coriolis * mesh.area_triangle
         self.ratio = mesh.dv_edge / mesh.dc_edge
-        self.outward = edge_signs_on_cell(mesh) > 0.0
-        self.anticlockwise = edge_signs_on_vertex(mesh) > 0.0
+        self.on_cell, self.on_vertex = signs
         self.prefix = _area_passed(mesh)
         self.local_cells = _LocalNumbers(mesh.n_cells)
         self.local_edges = _LocalNumbers(mesh.n_edges)
@@ -176,16 +185,23 @@ class _Cutter:
         larger = np.flatnonzero(sides > RING)
         corners = vertices.of(mesh.vertices_on_cell[computed])
         last_corner = corners[np.arange(len(computed)), sides - 1]
+        halo_edges, lengths = edges.known()[len(own_edges) :], mesh.dc_edge[edges.known()]
+        round_edges = edges.of(mesh.edges_on_vertex[round_vertices])
+        missing = self.on_vertex[round_vertices] == 0
+        if missing.any():
+            round_edges[missing] = len(lengths)
+            halo_edges, lengths = np.append(halo_edges, 0), np.append(lengths, 0.0)
+        ratio = np.where(self.on_cell[computed] == 0, 0.0, self.ratio[mesh.edges_on_cell[computed]])
         piece = _Piece(
             halo=[
                 self.cell_rank[cells.known()[len(own_cells) :]],
-                self.edge_rank[edges.known()[len(own_edges) :]],
+                self.edge_rank[halo_edges],
             ],
             indices=[
                 np.stack([self._slot(own_edges, end, slots) for end in (0, 1)]),
-                _signed(edges.of(mesh.edges_on_vertex[round_vertices]), self.anticlockwise[round_vertices]).T,
+                _signed(round_edges, self.on_vertex[round_vertices] > 0).T,
                 cells.of(mesh.cells_on_vertex[round_vertices]).T,
-                _ring(_signed(edges.of(mesh.edges_on_cell[computed]), self.outward[computed]), sides, 0),
+                _ring(_signed(edges.of(mesh.edges_on_cell[computed]), self.on_cell[computed] > 0), sides, 0),
                 _ring(cells.of(mesh.cells_on_cell[computed]), sides, 0),
                 _ring(corners, sides, last_corner),
                 larger,
@@ -193,10 +209,10 @@ class _Cutter:
                 sides[larger],
             ],
             metrics=[
-                mesh.dc_edge[edges.known()],
+                lengths,
                 mesh.kite_areas_on_vertex[round_vertices].T,
                 self.planetary[round_vertices],
-                _ring(self.ratio[mesh.edges_on_cell[computed]], sides, 0.0),
+                _ring(ratio, sides, 0.0),
                 _ring(self.prefix[computed], sides, 0.0),
                 1.0 / mesh.area_cell[computed],
                 self.potential[computed],
@@ -204,7 +220,7 @@ class _Cutter:
             sizes=(
                 len(cells.known()),
                 len(computed),
-                len(edges.known()),
+                len(lengths),
                 len(own_edges),
                 len(round_vertices),
                 RING * len(computed) + int(sides[larger].sum()),

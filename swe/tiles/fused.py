@@ -4,26 +4,35 @@ import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
+from mesh.triangulation.ordering import inverse_order
 from swe.equations.model import ShallowWaterModel
+from swe.equations.schemes import RINGLER2010
 from swe.errors import InputError
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
 
 
+def why_not_fused(model: ShallowWaterModel) -> str | None:
+    """What of a model the loops over tiles do not compute, as a part of a sentence; None where they compute it all."""
+    names = [term.name for term in model.terms_in_stages]
+    if names:
+        return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
+    return None if model.scheme is RINGLER2010 else f"the scheme is {model.scheme.name}"
+
+
 class FusedRungeKutta:
     """Advances a state by classical RK4; computes what `RungeKutta(model.tendency, state)` does, to round-off.
 
-    The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files of others equal up to
-    their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError` where the
-    model anticipates potential vorticity, which the loops over tiles do not.
+    The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files from other programs
+    equal up to their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError`
+    where the loops over tiles do not compute all of the model (`why_not_fused`).
     """
 
     def __init__(self, model: ShallowWaterModel) -> None:
-        if model.anticipation > 0.0:
-            raise InputError(
-                "the fused method does not anticipate potential vorticity; take RungeKutta(model.tendency, ...)"
-            )
+        reason = why_not_fused(model)
+        if reason:
+            raise InputError(f"{reason}, which the fused method has not; take RungeKutta(model.tendency, ...)")
         self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity)
         self.model = model
         self._scratch = _scratch(self.tiles)
@@ -47,22 +56,50 @@ class FusedRungeKutta:
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
-    def advance(self, state: State, time_step: float, steps: int = 1) -> int:
+    def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
         """Advance `state` in place by `steps` steps of `time_step` seconds, fewer where one left `unsound` values.
 
-        Gives the number of steps taken.
+        Gives the number of steps taken. Nothing depends on the `time`.
         """
-        tiles, model = self.tiles, self.model
-        h, u = self._in_order(state)
-        taken: int = tile_kernels.rk4_steps(
-            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, (h, u), *self._stages),
-            *(time_step, steps, self._unsound),
-        )
-        self._put_back(h, u, state)
+        y = self._in_order(state)
+        steps_taken = self._steps if self.model.processes.alone else self._steps_with_exchange
+        taken = steps_taken(y, time_step, steps)
+        self._put_back(*y, state)
         return taken
 
-    def tendency(self, state: State, result: State) -> None:
-        """Write the time derivative of `state` into `result`, as the stages of a step take it."""
+    def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
+        tiles, model = self.tiles, self.model
+        taken: int = tile_kernels.rk4_steps(
+            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, y, *self._stages),
+            *(time_step, steps, self._unsound),
+        )
+        return taken
+
+    def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
+        """The stages of `rk4_steps`, with the values of other processes arriving after each."""
+        model, (second, third, fourth) = self.model, self._stages
+        fixed = (self.tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, y)
+        for taken in range(1, steps + 1):
+            for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
+                tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
+                self._exchange(result)
+            if model.processes.largest(np.array([float(self.unsound)]))[0] > 0.0:
+                return taken
+        return steps
+
+    def _exchange(self, pair: tuple[Array, Array]) -> None:
+        """Let the values of other processes arrive in a pair of thickness and velocity in the order of the tiles."""
+        orders = (self.tiles.cell_order, self.tiles.edge_order)
+        state = State(
+            *(_in_order(v, None if o is None else inverse_order(o)) for v, o in zip(pair, orders, strict=True))
+        )
+        self.model.processes.exchange(state)
+        for values, order, arrived in zip(pair, orders, (state.thickness, state.normal_velocity), strict=True):
+            if arrived is not values:
+                values[:] = _in_order(arrived, order)
+
+    def tendency(self, state: State, result: State, time: float = 0.0) -> None:
+        """Write the time derivative of `state` into `result`, as the stages of a step take it at any `time`."""
         tiles, model = self.tiles, self.model
         in_order = tiles.cell_order is None and tiles.edge_order is None
         slope = (result.thickness, result.normal_velocity) if in_order else self._stages[0]

@@ -53,7 +53,7 @@ def made(folder: Path, name: str) -> VoronoiMesh:
 
 def series_of(mesh: VoronoiMesh, directory: Path, days: float, **options: object) -> dict[str, np.ndarray]:
     """Diagnostics of a run."""
-    Simulation(mesh, Williamson5(), directory, resume=True, **options).run(days)
+    Simulation(mesh, Williamson5(), directory, resume=True, **options).run(until=days)
     return read_series(directory / DIAGNOSTICS_FILE)
 
 

@@ -51,6 +51,7 @@ def exercise() -> dict[str, np.ndarray]:
     from mesh.voronoi_mesh import TOPOLOGY_NAMES
     from swe import ShallowWaterModel, Simulation
     from swe.diagnostics.budgets import measure_rates
+    from swe.equations.anticipation import Anticipation
     from swe.equations.dissipation import BiharmonicDissipation
     from swe.stepping.time_stepping import RungeKutta
 
@@ -101,13 +102,14 @@ def exercise() -> dict[str, np.ndarray]:
             if (values := getattr(plain.mesh, field)).ndim == 2
         }
         filled = dataclasses.replace(plain.mesh, **beyond)
-        model = ShallowWaterModel(filled, plain.model.topography, plain.model.coriolis, plain.model.gravity)
-        model = model.anticipating(100.0)
+        terms = [Anticipation(filled, 100.0), BiharmonicDissipation(filled, 1e12)]
+        before = plain.model
+        model = ShallowWaterModel(filled, before.topography, before.coriolis, before.gravity, terms=terms)
         state, tendency = plain.state.copy(), plain.state.empty_like()
         RungeKutta(model.tendency, state).advance(state, 30.0)
         model.tendency(state, tendency)
-        diagnosis, damping = model.diagnose(state), BiharmonicDissipation(model, 1e12)
-        rates = measure_rates(model, state, diagnosis, tendency, damping)
+        diagnosis = model.diagnose(state)
+        rates = measure_rates(model, state, diagnosis, tendency)
         found[f"filled h on {name}"] = state.thickness
         found[f"filled q on {name}"] = diagnosis.potential_vorticity
         found[f"filled enstrophy on {name}"] = np.array([rates["potential_enstrophy_rate_dissipation"]])

@@ -31,7 +31,7 @@ def test_packages_wait_until_they_are_asked_for() -> None:
 
 def test_an_unknown_name_is_told_with_the_known_ones() -> None:
     with pytest.raises(
-        AttributeError, match=r"module 'trisk' has no attribute 'scvt'; it has CASES, Case, .*scvt_mesh"
+        AttributeError, match=r"module 'trisk' has no attribute 'scvt'; it has CASES, Callback, Case, .*scvt_mesh"
     ):
         trisk.scvt  # noqa: B018
 

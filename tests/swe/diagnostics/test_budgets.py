@@ -10,24 +10,27 @@ from mesh import VoronoiMesh
 from swe import ShallowWaterModel, Simulation, State
 from swe.diagnostics.budgets import RATES, measure_rates, rate_name, rates_of_time
 from swe.diagnostics.invariants import measure_invariants
+from swe.equations.anticipation import Anticipation
 from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.terms import Term
 from swe.output.files import read_series
 from swe.tiles.fused import FusedRungeKutta
 
 RADIUS = 6.4e6
 
 
-def random_model(mesh: VoronoiMesh) -> tuple[ShallowWaterModel, State]:
+def random_model(mesh: VoronoiMesh, *terms: Term) -> tuple[ShallowWaterModel, State]:
     random = np.random.default_rng(11)
     topography = random.uniform(0.0, 500.0, mesh.n_cells)
-    model = ShallowWaterModel(mesh.scaled(RADIUS), topography, random.uniform(-1e-4, 1e-4, mesh.n_vertices), 9.8)
+    coriolis = random.uniform(-1e-4, 1e-4, mesh.n_vertices)
+    model = ShallowWaterModel(mesh.scaled(RADIUS), topography, coriolis, 9.8, terms=terms)
     return model, State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
 
 
-def gentle(model: ShallowWaterModel) -> BiharmonicDissipation:
+def gentle(mesh: VoronoiMesh) -> BiharmonicDissipation:
     """Dissipation that would be stable with steps of a minute."""
-    unit = BiharmonicDissipation(model, 1.0).largest_time_step
-    return BiharmonicDissipation(model, unit / 60.0)
+    unit = BiharmonicDissipation(mesh, 1.0).largest_time_step
+    return BiharmonicDissipation(mesh, unit / 60.0)
 
 
 def test_work_of_coriolis_force_and_exchange_vanish(any_mesh: VoronoiMesh) -> None:
@@ -58,12 +61,13 @@ def test_rates_add_up_to_the_derivative_of_the_integrals(any_mesh: VoronoiMesh, 
     """Along the tendency the integrals are polynomials or smooth: central differences give their derivatives."""
     if any_mesh.dv_edge.min() < 1e-3:
         pytest.skip("gradients along edges of no length have no meaning")
-    model, state = random_model(any_mesh)
-    model = model.anticipating(anticipation)
-    dissipation = gentle(model)
+    scaled = any_mesh.scaled(RADIUS)
+    dissipation = gentle(scaled)
+    terms = [Anticipation(scaled, anticipation)] if anticipation > 0.0 else []
+    model, state = random_model(any_mesh, dissipation, *terms)
     tendency = state.empty_like()
     model.tendency(state, tendency)
-    rates = measure_rates(model, state, model.diagnose(state), tendency, dissipation)
+    rates = measure_rates(model, state, model.diagnose(state), tendency)
     slope = State(tendency.thickness, tendency.normal_velocity + dissipation.acceleration(state.normal_velocity))
 
     def integrals(time: float) -> dict[str, float]:

@@ -7,6 +7,7 @@ import pytest
 from mesh import VoronoiMesh, build_operators
 from mesh.discrete.operators import vertex_to_cell
 from swe import ShallowWaterModel, State
+from swe.equations.anticipation import Anticipation
 from swe.equations.tendency import tendency
 from swe.errors import InputError
 
@@ -113,8 +114,9 @@ def test_anticipation_is_what_the_operators_say(any_mesh: VoronoiMesh) -> None:
     q_edge = -100.0 * (u * q_across + (operators.perp @ u) * q_along)
     flux = (operators.cell_to_edge @ h) * u
     expected = 0.5 * (q_edge * (operators.perp @ flux) + operators.perp @ (q_edge * flux))
-    anticipating = model.anticipating(100.0)
-    found = anticipating.anticipated_acceleration(state)
+    anticipation = Anticipation(mesh, 100.0)
+    anticipating = ShallowWaterModel(mesh, model.topography, coriolis, model.gravity, terms=[anticipation])
+    found = anticipating.tendency_of(anticipation, state).normal_velocity
     np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
     with_it, without = state.empty_like(), state.empty_like()
     anticipating.tendency(state, with_it)

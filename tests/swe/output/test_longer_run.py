@@ -9,6 +9,7 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, scvt_mesh
 from swe import RunError, Simulation
+from swe.diagnostics.outputs import Evaluation
 from swe.errors import InputError, SetupWarning
 from swe.output.checkpoint import checkpoint_paths, last_checkpoint
 from swe.output.files import DiagnosticsFile, read_series
@@ -28,7 +29,7 @@ def run_to(mesh: VoronoiMesh, folder: Path, days: float, **options: object) -> S
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         simulation = Simulation(mesh, Williamson5(), folder, resume=True, **{**OPTIONS, **options})
-        simulation.run(days, progress=False)
+        simulation.run(until=days, progress=False)
     return simulation
 
 
@@ -70,8 +71,8 @@ def test_an_interrupted_run_gets_another_end(
     monkeypatch.setattr("swe.run.simulation.CELL_STEPS_PER_CALL", 1)
     advance = Simulation._advance
 
-    def fail(simulation: Simulation, event: float) -> None:
-        advance(simulation, event)
+    def fail(simulation: Simulation, event: float, most: int) -> None:
+        advance(simulation, event, most)
         if simulation.time > stop * 86400.0:
             raise KeyboardInterrupt
 
@@ -92,10 +93,10 @@ def test_what_goes_wrong_while_a_run_is_carried_on(
     run_to(small_mesh, tmp_path / "parts", 1.01)
     append = DiagnosticsFile.append
 
-    def fail(file: DiagnosticsFile, time: float, *arguments: object) -> None:
-        if time > 1.2 * 86400.0:
+    def fail(file: DiagnosticsFile, now: Evaluation) -> None:
+        if now.time > 1.2 * 86400.0:
             raise RunError("no room")
-        append(file, time, *arguments)
+        append(file, now)
 
     monkeypatch.setattr(DiagnosticsFile, "append", fail)
     with pytest.raises(RunError, match="no room"):
@@ -124,7 +125,7 @@ def test_without_a_shared_checkpoint_a_longer_run_begins_again(small_mesh: Voron
     (tmp_path / "parts" / "checkpoint.shared.npz").unlink()
     checkpoint_paths(tmp_path / "parts")[0].unlink()
     with pytest.warns(SetupWarning, match="no checkpoint from which a run to day 2 goes on; the run begins again"):
-        Simulation(small_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(2.0, progress=False)
+        Simulation(small_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(until=2.0, progress=False)
     assert kept_files(tmp_path / "whole") == kept_files(tmp_path / "parts")
 
 

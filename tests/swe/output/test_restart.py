@@ -14,6 +14,7 @@ import pytest
 from cases import Williamson2, Williamson5
 from mesh import VoronoiMesh, scvt_mesh, write_mesh
 from swe import RunError, Simulation, State
+from swe.diagnostics.outputs import Evaluation
 from swe.errors import InputError, RunStopped, SetupWarning
 from swe.output.checkpoint import Checkpoint, checkpoint_paths, last_checkpoint, write_checkpoint
 from swe.output.files import DiagnosticsFile, HistoryFile
@@ -32,16 +33,16 @@ def run_and_stop(mesh: VoronoiMesh, folder: Path, **options: object) -> None:
     simulation = Simulation(mesh, Williamson5(), folder, **{**OPTIONS, **options})
     append = DiagnosticsFile.append
 
-    def append_and_ask(file: DiagnosticsFile, time: float, *arguments: object) -> None:
-        append(file, time, *arguments)
-        if time > 1e5:
+    def append_and_ask(file: DiagnosticsFile, now: Evaluation) -> None:
+        append(file, now)
+        if now.time > 1e5:
             os.kill(os.getpid(), signal.SIGTERM)
 
     with (
         mock.patch.object(DiagnosticsFile, "append", append_and_ask),
         pytest.raises(RunStopped, match=r"stopped by SIGTERM at day .*; its checkpoint is in"),
     ):
-        simulation.run(days=3, progress=False)
+        simulation.run(until=3, progress=False)
 
 
 def test_round_trip(tmp_path: Path) -> None:
@@ -134,7 +135,7 @@ def test_a_stopped_run_goes_on_to_the_same_files(
     icosahedral_mesh: VoronoiMesh, tmp_path: Path, integrator: str
 ) -> None:
     whole = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "whole", integrator=integrator, **OPTIONS)
-    whole.run(days=3, progress=False)
+    whole.run(until=3, progress=False)
     run_and_stop(icosahedral_mesh, tmp_path / "parts", integrator=integrator)
     record = json.loads((tmp_path / "parts" / "run.json").read_text())
     assert record["status"] == "interrupted"
@@ -144,7 +145,7 @@ def test_a_stopped_run_goes_on_to_the_same_files(
         icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS
     )
     assert again.steps == record["steps"]
-    again.run(days=3, progress=False)
+    again.run(until=3, progress=False)
     assert same_files(tmp_path / "whole", tmp_path / "parts")
     np.testing.assert_array_equal(again.state.normal_velocity, whole.state.normal_velocity)
     after = json.loads((tmp_path / "parts" / "run.json").read_text())
@@ -152,40 +153,40 @@ def test_a_stopped_run_goes_on_to_the_same_files(
     assert after["wall_seconds"] > record["wall_seconds"]
     assert len(checkpoint_paths(tmp_path / "parts")) == 2
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", integrator=integrator, resume=True, **OPTIONS).run(
-        days=3, progress=False
+        until=3, progress=False
     )
     assert same_files(tmp_path / "whole", tmp_path / "parts")
 
 
 def test_without_a_checkpoint_a_run_begins_again(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     for name in ("whole", "parts"):
-        Simulation(icosahedral_mesh, Williamson5(), tmp_path / name, resume=True).run(days=1, progress=False)
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / name, resume=True).run(until=1, progress=False)
     for path in checkpoint_paths(tmp_path / "parts"):
         path.unlink()
     (tmp_path / "parts" / "history.nc").write_bytes(b"half")
     with pytest.warns(SetupWarning, match="holds no checkpoint; the run begins again"):
         again = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", resume=True)
     assert again.steps == 0
-    again.run(days=1, progress=False)
+    again.run(until=1, progress=False)
     assert same_files(tmp_path / "whole", tmp_path / "parts")
 
 
 def test_files_that_lost_rows_are_refused(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a").run(days=1, progress=False)
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b").run(days=0.3, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a").run(until=1, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b").run(until=0.3, progress=False)
     (tmp_path / "a" / "diagnostics.nc").write_bytes((tmp_path / "b" / "diagnostics.nc").read_bytes())
     record = (tmp_path / "a" / "run.json").read_bytes()
     with pytest.raises(InputError, match=r"diagnostics.nc is not what its run had written, 5 rows"):
-        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a", resume=True).run(days=1, progress=False)
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "a", resume=True).run(until=1, progress=False)
     history = tmp_path / "b" / "history.nc"
     whole = history.read_bytes()
     for content in (whole[: len(whole) // 2], whole[:-8], b"text", (tmp_path / "b" / "diagnostics.nc").read_bytes()):
         history.write_bytes(content)
         with pytest.raises(InputError, match=r"history.nc .*start anew"):
-            Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(days=0.3, progress=False)
+            Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(until=0.3, progress=False)
     history.unlink()
     with pytest.raises(InputError, match=r"history.nc cannot be opened to go on"):
-        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(days=0.3, progress=False)
+        Simulation(icosahedral_mesh, Williamson5(), tmp_path / "b", resume=True).run(until=0.3, progress=False)
     assert (tmp_path / "a" / "run.json").read_bytes() == record
 
 
@@ -215,13 +216,13 @@ def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp
         def coriolis_on(self, mesh: VoronoiMesh) -> np.ndarray:
             return 1.001 * super().coriolis_on(mesh)
 
-    with pytest.raises(InputError, match="a run of a case with another start, topography or rotation"):
+    with pytest.raises(InputError, match="a run of a case with another start, topography, rotation or forcing"):
         resumed(case=Moved())
     assert before == {path.name: path.read_bytes() for path in tmp_path.iterdir()}
 
 
 def test_other_versions_are_warned_of(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(days=0.5, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(until=0.5, progress=False)
     record = json.loads((tmp_path / "run.json").read_text())
     record["versions"]["numba"] = "0.1"
     (tmp_path / "run.json").write_text(json.dumps(record))
@@ -261,11 +262,11 @@ def test_two_runs_do_not_write_to_one_directory(icosahedral_mesh: VoronoiMesh, t
         first._recording(first.recorder, 1.0),
         pytest.raises(InputError, match="is written to by another run just now"),
     ):
-        second.run(days=1, progress=False)
+        second.run(until=1, progress=False)
     with pytest.raises(InputError, match="holds a run already"):
-        second.run(days=1, progress=False)
+        second.run(until=1, progress=False)
     replacing = Simulation(icosahedral_mesh, Williamson5(), tmp_path, overwrite=True)
-    replacing.run(days=0.25, progress=False)
+    replacing.run(until=0.25, progress=False)
 
 
 def test_what_is_no_run_is_not_written_over(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
@@ -281,7 +282,7 @@ def test_what_is_no_run_is_not_written_over(icosahedral_mesh: VoronoiMesh, tmp_p
     with pytest.raises(InputError, match="is no file, but a run has a file of that name"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other", overwrite=True)
     (tmp_path / "other" / "history.nc").rmdir()
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other").run(days=0.1, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other").run(until=0.1, progress=False)
     assert (tmp_path / "other" / ".notes.part").exists()
 
 
@@ -290,22 +291,22 @@ def test_a_run_that_broke_off_is_made_again(
 ) -> None:
     """After a failed writing the object cannot go on, as its files lack rows; from the checkpoint all is well."""
     whole = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "whole", **OPTIONS)
-    whole.run(days=1, progress=False)
+    whole.run(until=1, progress=False)
     simulation = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", checkpoint_interval=7200.0, **OPTIONS)
     with monkeypatch.context() as patch:
         append = HistoryFile.append
 
-        def fail_once(self: HistoryFile, time: float, *arguments: object) -> None:
-            if time > 30000.0:
+        def fail_once(self: HistoryFile, now: Evaluation) -> None:
+            if now.time > 30000.0:
                 raise RunError("no room")
-            append(self, time, *arguments)
+            append(self, now)
 
         patch.setattr(HistoryFile, "append", fail_once)
         with pytest.raises(RunError, match="no room"):
-            simulation.run(days=1, progress=False)
+            simulation.run(until=1, progress=False)
     with pytest.raises(InputError, match="the run broke off and cannot go on; make the simulation again"):
-        simulation.run(days=1, progress=False)
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(1, progress=False)
+        simulation.run(until=1, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts", resume=True, **OPTIONS).run(until=1, progress=False)
     assert same_files(tmp_path / "whole", tmp_path / "parts")
 
 
@@ -326,7 +327,7 @@ def test_a_run_on_another_mesh_killed_at_its_start_goes_on(
     icosahedral_mesh: VoronoiMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The mesh of the run that is replaced is gone before anything says that there is a new run."""
-    Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(days=0.1, progress=False)
+    Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(until=0.1, progress=False)
 
     def die(*_: object) -> None:
         raise KeyboardInterrupt
@@ -334,8 +335,8 @@ def test_a_run_on_another_mesh_killed_at_its_start_goes_on(
     with monkeypatch.context() as patch:
         patch.setattr(Recorder, "_write_mesh", die)
         with pytest.raises(KeyboardInterrupt):
-            Simulation(scvt_mesh(162), Williamson5(), tmp_path, overwrite=True).run(days=0.1, progress=False)
+            Simulation(scvt_mesh(162), Williamson5(), tmp_path, overwrite=True).run(until=0.1, progress=False)
     assert not (tmp_path / "mesh.nc").exists()
     with pytest.warns(SetupWarning, match="holds no checkpoint"):
         again = Simulation(scvt_mesh(162), Williamson5(), tmp_path, resume=True)
-    again.run(days=0.1, progress=False)
+    again.run(until=0.1, progress=False)

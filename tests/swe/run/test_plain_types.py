@@ -93,7 +93,9 @@ def test_parameters_of_numpy_become_plain() -> None:
 @pytest.mark.parametrize("heights", [(1.0, 3.0), [1.0, 3.0], np.array([1.0, 3.0]), (np.float32(1.0), np.int64(3))])
 def test_a_run_goes_on_with_parameters_that_are_lists(small_mesh: VoronoiMesh, tmp_path: Path, heights: object) -> None:
     for days in (0.5, 1.0):
-        Simulation(small_mesh, Listed(heights=heights), tmp_path, time_step=HOUR, resume=True).run(days, progress=False)
+        Simulation(small_mesh, Listed(heights=heights), tmp_path, time_step=HOUR, resume=True).run(
+            until=days, progress=False
+        )
     record = json.loads((tmp_path / "run.json").read_text())
     assert record["parameters"]["heights"] == [1.0, 3.0]
     assert record["day_reached"] == 1.0
@@ -139,3 +141,9 @@ def test_integrals_beyond_the_numbers_are_refused(small_mesh: VoronoiMesh) -> No
     words = "^the initial .* is inf, beyond the range of numbers; correct the parameters of williamson2$"
     with np.errstate(all="ignore"), pytest.raises(InputError, match=words):
         Simulation(small_mesh, Williamson2(reference_depth=1e295), time_step=1.0)
+
+
+def test_the_error_of_earlier_versions_is_the_same() -> None:
+    from swe.errors import InputError, SetupError
+
+    assert SetupError is InputError

@@ -11,8 +11,9 @@ import xarray
 from cases import Williamson2, Williamson5
 from mesh import VoronoiMesh
 from swe import RunError, Simulation
+from swe.diagnostics.outputs import FIELDS, SERIES
 from swe.errors import InputError
-from swe.output.files import FIELDS, SERIES, read_series
+from swe.output.files import read_series
 from swe.state import State
 
 
@@ -28,8 +29,8 @@ def test_run_directory_holds_what_scripts_rely_on(icosahedral_mesh: VoronoiMesh,
     assert len(record["mesh_hash"]) == 64
     with netCDF4.Dataset(tmp_path / "run" / "history.nc") as file:
         assert file["time"][:].tolist() == [0.0, 86400.0, 172800.0, 216000.0]
-        for name, (place, _, _) in FIELDS.items():
-            assert file[name].dimensions == ("Time", place)
+        for name, field in FIELDS.items():
+            assert file[name].dimensions == ("Time", field.place)
             assert np.all(np.isfinite(file[name][:]))
         assert file["topography"][:].max() > 1500.0
         np.testing.assert_array_equal(file["thickness"][-1], simulation.state.thickness)
@@ -89,10 +90,10 @@ def test_output_times_are_met_with_a_step_that_does_not_divide_them(
 
 def test_a_run_goes_on_where_it_stood(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     parts = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "parts")
-    parts.run(days=1, progress=False)
-    parts.run(days=2, progress=False)
+    parts.run(until=1, progress=False)
+    parts.run(until=2, progress=False)
     whole = Simulation(icosahedral_mesh, Williamson5(), tmp_path / "whole")
-    whole.run(days=2, progress=False)
+    whole.run(until=2, progress=False)
     np.testing.assert_array_equal(parts.state.thickness, whole.state.thickness)
     series = [read_series(tmp_path / name / "diagnostics.nc") for name in ("parts", "whole")]
     for name in series[0]:

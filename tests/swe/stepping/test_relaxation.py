@@ -55,7 +55,7 @@ def test_a_relaxed_step_keeps_energy_and_mass(any_mesh: VoronoiMesh) -> None:
     plain, relaxed = start.copy(), start.copy()
     step = 0.8 / model.courant_number(start, 1.0)
     method.advance(plain, step)
-    stepper = RelaxedSteps(method, Relaxation(model, start), start, None)
+    stepper = RelaxedSteps(method, Relaxation(model, start), start)
     time, taken = stepper.advance(relaxed, 0.0, 1000.0 * step, step, 1)
     assert taken == 1
     assert time != step
@@ -98,9 +98,9 @@ def test_the_last_step_ends_at_the_output_time(icosahedral_mesh: VoronoiMesh) ->
         simulation.method.advance(state, step, 5)
         stepper = simulation.stepper
         assert isinstance(stepper, RelaxedSteps)
-        factor = stepper._try(state, step)
+        factor = stepper._try(state, step, 0.0)
         assert abs(factor - 1.0) > 1e-4
-        factor, length = stepper._land(state, factor, step)
+        factor, length = stepper._land(state, factor, step, 0.0)
         assert abs(factor * length - step) <= 1e-10 * step
         assert abs(length - step) > 1e-5 * step
 

@@ -5,7 +5,7 @@ from swe.state import State
 from swe.stepping.time_stepping import RK4, ButcherTableau, RungeKutta
 
 
-def decay(state: State, result: State) -> None:
+def decay(state: State, result: State, time: float) -> None:
     """h' = -h^2, u' = -h u^2: from h = u = 1, h = 1/(1 + t) and u = 1/(1 + log(1 + t))."""
     h, u = state.thickness, state.normal_velocity
     result.thickness[:] = -(h**2)
@@ -44,7 +44,7 @@ def test_a_step_allocates_nothing_that_grows_with_the_mesh() -> None:
 
     size = 200_000
     state = State(np.ones(size), np.zeros(size))
-    stepper = RungeKutta(lambda state, result: None, state)
+    stepper = RungeKutta(lambda state, result, time: None, state)
     stepper.step(state, 1.0)
     tracemalloc.start()
     stepper.step(state, 1.0)

@@ -1,0 +1,50 @@
+"""Meshes in which neighbours are missing: edges between a cell and none are walls, through which nothing flows.
+
+A missing cell, or a missing edge of a vertex, is -1 in `cells_on_edge`, `cells_on_cell`, `cells_on_vertex` and
+`edges_on_vertex`; both vertices of every edge and all edges and vertices of every cell are there. `area_triangle` is
+the sum of the kites that are there.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from mesh.arrays import Index
+from mesh.voronoi_mesh import VoronoiMesh
+
+
+def wall_edges(mesh: VoronoiMesh) -> Index:
+    """Edges at which a cell is missing."""
+    return np.flatnonzero((mesh.cells_on_edge < 0).any(axis=1))
+
+
+def closed_mesh(mesh: VoronoiMesh) -> VoronoiMesh:
+    """`mesh` as loops read it, without -1: what is missing is an entity that is there, of no size.
+
+    The missing cell of a wall is its other one, so that differences across vanish; no tangential velocity is made at
+    walls, nor from the flow through them; kites of missing cells have no area. Signs of edges (`edge_signs_on_cell`,
+    `edge_signs_on_vertex`), which vanish at walls and for missing edges, are those of `mesh`, not of what is given.
+    `mesh` itself where nothing is missing.
+    """
+    walls = wall_edges(mesh)
+    no_cell = mesh.cells_on_vertex < 0
+    if not (len(walls) or no_cell.any() or (mesh.edges_on_vertex < 0).any()):
+        return mesh
+    is_wall = np.zeros(mesh.n_edges, np.bool_)
+    is_wall[walls] = True
+    own = np.arange(mesh.n_cells)[:, None]
+    return replace(
+        mesh,
+        cells_on_edge=_filled(mesh.cells_on_edge),
+        cells_on_cell=np.where(mesh.on_ring & (mesh.cells_on_cell < 0), own, mesh.cells_on_cell).astype(np.int32),
+        cells_on_vertex=_filled(mesh.cells_on_vertex),
+        edges_on_vertex=_filled(mesh.edges_on_vertex),
+        kite_areas_on_vertex=np.where(no_cell, 0.0, mesh.kite_areas_on_vertex),
+        n_edges_on_edge=np.where(is_wall, 0, mesh.n_edges_on_edge).astype(np.int32),
+        weights_on_edge=np.where(is_wall[mesh.edges_on_edge], 0.0, mesh.weights_on_edge),
+    )
+
+
+def _filled(neighbours: Index) -> Index:
+    """Rows of neighbours with one that is there in the place of those that are missing."""
+    return np.where(neighbours < 0, neighbours.max(axis=1, keepdims=True), neighbours).astype(np.int32)

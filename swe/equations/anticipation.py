@@ -1,0 +1,38 @@
+"""Anticipation of potential vorticity (Sadourny and Basdevant 1985): potential enstrophy decays, energy stays."""
+
+from mesh.arrays import Array
+from mesh.discrete.operators import vertex_to_cell
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.equations import kernels
+from swe.equations.terms import Term
+from swe.state import State
+
+
+class Anticipation(Term):
+    """The Coriolis flux carries q_e - seconds (u . grad q)_e, what flows to the edge within so many `seconds`."""
+
+    name = "anticipation"
+    meaning = "by the anticipation of potential vorticity"
+    changes = ("potential_enstrophy",)
+
+    def __init__(self, mesh: VoronoiMesh, seconds: float) -> None:
+        self.seconds = seconds
+        self._mesh = mesh
+
+    def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
+        """See `Term`."""
+        mesh = self._mesh
+        kernels.anticipate(
+            state.normal_velocity,
+            potential_vorticity,
+            vertex_to_cell(mesh, potential_vorticity),
+            self.seconds,
+            mesh.cells_on_edge,
+            mesh.vertices_on_edge,
+            mesh.n_edges_on_edge,
+            mesh.edges_on_edge,
+            mesh.weights_on_edge,
+            mesh.dc_edge,
+            mesh.dv_edge,
+            at_edges,
+        )

@@ -1,0 +1,115 @@
+"""Terms: what is added to the bracket of the scheme, each under a name of its own.
+
+The tendency of a model is the bracket plus the sum of its terms. Most act in every stage of a step; a term may ask to
+act after each step instead (`after_steps`). The diagnostics of a run hold what each term does to the global integrals.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.errors import InputError
+from swe.state import State
+
+INTEGRALS = ("mass", "total_energy", "potential_enstrophy", "absolute_vorticity")
+"""Global integrals whose budgets are kept."""
+
+RESERVED = ("transport", "exchange", "coriolis", "gradient", "anticipation", "dissipation", "time")
+"""Names of what is in every budget."""
+
+FieldFunction = Callable[[VoronoiMesh, State, float], Array]
+"""Of the mesh, in metres, the state and the time, s, since the start."""
+
+
+class Term:
+    """A term of the equations.
+
+    Attributes
+    ----------
+    name
+        In the names of the diagnostics, such as `total_energy_rate_wind`.
+    meaning
+        What changes the integrals, as the end of a sentence: "by the wind".
+    changes
+        Those of `INTEGRALS` that the term changes; their rates are diagnosed.
+    after_steps
+        Whether the term acts after each step (`apply`) rather than in its stages.
+    """
+
+    name: str
+    meaning: str
+    changes: tuple[str, ...]
+    after_steps = False
+
+    def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
+        """Change the potential vorticity at edges (n_edges,) that the Coriolis flux carries, in place.
+
+        `potential_vorticity` is that of `state` at vertices. Nothing by default.
+        """
+
+    def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
+        """Add the term at `state` on `mesh` and `time`, seconds since the start, to `tendency`. Nothing by default."""
+
+    def apply(self, state: State, time_step: float) -> None:
+        """Change `state` by what a term that acts after steps does in `time_step` seconds."""
+        raise NotImplementedError(f"the term {self.name} acts in the stages of a step")
+
+
+class Forcing(Term):
+    """A term of the user's own, made of plain functions of mesh, state and time, which must not change them.
+
+    Parameters
+    ----------
+    name
+        Its name in the diagnostics: letters, digits and underscores.
+    acceleration
+        Gives what is added to du/dt at edges (n_edges,), m/s2, positive from `cells_on_edge[e, 0]` to `[e, 1]`;
+        `mesh.discrete.operators.normal_component` projects vectors.
+    source
+        Gives what is added to dh/dt at cells (n_cells,), m/s.
+
+    Raises
+    ------
+    InputError
+        Where the name cannot be used or there is no function; when the model is made, or in the course of a run, where
+        a function fails or does not give one number for each edge or cell.
+    """
+
+    def __init__(
+        self, name: str, acceleration: FieldFunction | None = None, source: FieldFunction | None = None
+    ) -> None:
+        if not (isinstance(name, str) and name.isidentifier() and name.isascii()):
+            raise InputError(f"the name of a term is {name!r}; it must be made of letters, digits and underscores")
+        if name in RESERVED:
+            raise InputError(f"a term cannot be named '{name}', as a part of every budget is; choose another name")
+        if not (callable(acceleration) or callable(source)):
+            raise InputError(f"the term {name} does nothing; give it a function, acceleration= or source=")
+        self.name = name
+        self.meaning = f"by {name.replace('_', ' ')}"
+        self.acceleration, self.source = acceleration, source
+        of_source, of_acceleration = set(INTEGRALS) - {"absolute_vorticity"}, set(INTEGRALS) - {"mass"}
+        changed = (of_source if source else set()) | (of_acceleration if acceleration else set())
+        self.changes = tuple(integral for integral in INTEGRALS if integral in changed)
+
+    def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
+        """See `Term`."""
+        if self.acceleration is not None:
+            tendency.normal_velocity[:] += self._values("acceleration", mesh, state, time, mesh.n_edges)
+        if self.source is not None:
+            tendency.thickness[:] += self._values("source", mesh, state, time, mesh.n_cells)
+
+    def _values(self, what: str, mesh: VoronoiMesh, state: State, time: float, size: int) -> Array:
+        """What a function of the user gives, one number for all or for each of `size` entities."""
+        try:
+            values = np.asarray(getattr(self, what)(mesh, state, time), dtype=np.float64)
+        except InputError:
+            raise
+        except (Exception, SystemExit) as error:
+            raise InputError(f"the {what} of the term {self.name} failed at {time:g} s: {error!r}") from error
+        if values.shape not in ((), (size,)):
+            raise InputError(
+                f"the {what} of the term {self.name} has shape {values.shape}; the mesh needs ({size},), or one number"
+            )
+        return values

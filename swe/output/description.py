@@ -1,0 +1,103 @@
+"""What is told of a run: what it is made of, and where it stands."""
+
+import hashlib
+from collections.abc import Iterable
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from mesh.files.io import mesh_hash
+from mesh.plain import recorded
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.configuration import Configuration
+from swe.diagnostics.invariants import Invariants
+from swe.diagnostics.outputs import FIELDS
+from swe.equations.model import ShallowWaterModel
+from swe.equations.terms import Term
+from swe.errors import InputError
+from swe.state import State
+from swe.stepping.time_stepping import Tendency
+
+ABSENT: dict[str, object] = {"fields": list(FIELDS), "forcings": []}
+"""What is so of runs of earlier versions, whose records do not tell."""
+
+
+@dataclass(frozen=True, eq=False)
+class RunDescription:
+    """What is written of a run that does not change in its course, and what its diagnostics are made with.
+
+    `start_hash` is what the function of that name gives, taken before the first step, as states change in place.
+    `fields` are the names of those that snapshots hold, `forcings` those of the terms that the case adds, and `loops`
+    which ones take the steps, "fused" or "plain".
+    """
+
+    case_name: str
+    parameters: dict[str, float]
+    configuration: Configuration
+    model: ShallowWaterModel
+    start_hash: str
+    initial_invariants: Invariants
+    fields: tuple[str, ...]
+    forcings: tuple[str, ...]
+    loops: str
+
+    @property
+    def mesh(self) -> VoronoiMesh:
+        """The mesh, scaled to the radius of the case."""
+        return self.model.mesh
+
+
+@dataclass(frozen=True, eq=False)
+class Moment:
+    """Where a run stands: seconds since its start, steps taken, state, Courant number, and what gives the tendency."""
+
+    time: float
+    steps: int
+    state: State
+    courant_number: float
+    tendency: Tendency
+
+
+def described(run: RunDescription) -> dict[str, object]:
+    """What a run must have in common with the one that it goes on from, as the record has it."""
+    try:
+        as_recorded = recorded(run.parameters)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InputError(
+            f"the parameters of {run.case_name} cannot be recorded ({error}); give numbers, words, or lists of them"
+        ) from error
+    return {
+        "mesh_hash": mesh_hash(run.mesh),
+        "case": run.case_name,
+        "parameters": as_recorded,
+        "configuration": asdict(run.configuration),
+        "start_hash": run.start_hash,
+        "fields": list(run.fields),
+        "forcings": list(run.forcings),
+    }
+
+
+def start_hash(model: ShallowWaterModel, state: State, forcings: Iterable[Term] = ()) -> str:
+    """SHA-256, in hexadecimal, of the initial `state`, topography, Coriolis parameter and what the `forcings` add."""
+    digest = hashlib.sha256(np.float64(model.gravity).tobytes())
+    added = [values for term in forcings for values in vars(model.tendency_of(term, state)).values()]
+    for values in (*vars(state).values(), model.topography, model.coriolis, *added):
+        digest.update(np.ascontiguousarray(values).tobytes())
+    return digest.hexdigest()
+
+
+def difference(name: str, then: object, now: object) -> str:
+    """What is different between the run that a directory holds and the one that is asked for, as part of a sentence."""
+    if isinstance(then, dict) and isinstance(now, dict):
+        for key in (*now, *then):
+            if then.get(key) != now.get(key):
+                return difference(key, then.get(key), now.get(key))
+    if name == "mesh_hash":
+        return "a run on another mesh"
+    if name == "start_hash":
+        return "a run of a case with another start, topography, rotation or forcing"
+    return f"a run with {name.replace('_', ' ')} = {_shown(then)}, not {_shown(now)}"
+
+
+def _shown(value: object) -> str:
+    return f"{value:.15g}" if isinstance(value, float | int) else str(value)

@@ -1,0 +1,81 @@
+"""Sums of many terms that come out the same in whatever order, and in how many parts, the terms are added.
+
+Added to M = 3/2 2^p and taken less M again, a double is rounded to a multiple of 2^(p - 52). Multiples of one quantum
+add without rounding as long as their sum stays below 2^53 of them. So each term is folded into a coarse and a fine
+part by two such numbers, and what is left beneath is far below the round-off of the terms: Demmel and Nguyen (2013),
+Fast reproducible floating-point summation.
+"""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array
+from swe.parallel.processes import Processes
+
+BLOCKS = 64
+"""Parts in which sums are taken, so that threads share the work; results do not depend on it."""
+
+DIGITS = 53
+"""Of a double, binary."""
+
+Folded = tuple[float, float, float]
+"""Coarse and fine sum, and the largest magnitude of a term."""
+
+NOTHING: Folded = (0.0, 0.0, 0.0)
+"""No terms."""
+
+UNFOLDED = (0.0, 0.0)
+"""Folds that leave the terms as they are, for a first pass that finds the largest one."""
+
+
+options: dict[str, Any] = {
+    "error_model": "numpy",
+    "forceinline": True,
+    "no_cpython_wrapper": True,
+    "no_cfunc_wrapper": True,
+}
+
+
+@numba.njit(**options)
+def add(total: Folded, term: float, coarse: float, fine: float) -> Folded:
+    """`total` with one more `term`; `coarse` and `fine` are those of `folds`, or `UNFOLDED`."""
+    part = (term + coarse) - coarse
+    return total[0] + part, total[1] + (((term - part) + fine) - fine), max(total[2], abs(term))
+
+
+def folds(bound: float, count: int) -> tuple[float, float]:
+    """The numbers by which up to `count` terms, whose magnitudes add to no more than `bound`, are folded."""
+    if not 0.0 < bound < math.inf:
+        return UNFOLDED  # no terms but zeros, or some that have no sum
+    coarse = math.frexp(bound)[1] + 1
+    fine = coarse - DIGITS + math.frexp(count)[1] + 1
+    try:
+        return math.ldexp(1.5, coarse), math.ldexp(1.5, fine)
+    except OverflowError:
+        return UNFOLDED
+
+
+def folded_sums(
+    kernel: Callable[[Array, Array, Array], None], sums: int, count: int, processes: Processes
+) -> list[float]:
+    """The `sums` that a kernel adds up, free of their order; `count` is that of the terms of all processes at most.
+
+    `kernel(coarse, fine, parts)` writes what `add` gives into `parts` (BLOCKS, sums, 3), with the folds (sums,) of each
+    sum. It is called twice, the first time for the largest terms, which bound the sums.
+    """
+    parts = np.empty((BLOCKS, sums, 3))
+    kernel(np.zeros(sums), np.zeros(sums), parts)
+    largest = processes.largest(parts[:, :, 2].max(axis=0))
+    numbers = np.array([folds(count * bound, count) for bound in largest.tolist()])
+    return bounded_sums(kernel, numbers, processes)
+
+
+def bounded_sums(kernel: Callable[[Array, Array, Array], None], numbers: Array, processes: Processes) -> list[float]:
+    """The same in one pass, with `folds` (sums, 2) that are known."""
+    parts = np.empty((BLOCKS, len(numbers), 3))
+    kernel(numbers[:, 0].copy(), numbers[:, 1].copy(), parts)
+    return [coarse + fine for coarse, fine in processes.sums(parts[:, :, :2].sum(axis=0)).tolist()]

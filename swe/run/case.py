@@ -1,0 +1,128 @@
+"""What a simulation asks of a test case, and the fields that it gets, checked."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.integrals.quadrature import Sampling
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.equations.model import check_field
+from swe.equations.soundness import has_negative_kites, problem_at_vertices, problem_with_state
+from swe.equations.terms import Forcing
+from swe.errors import InputError
+from swe.state import State
+
+
+class Case(Protocol):
+    """What a simulation asks of a test case: see `cases.base.Case`.
+
+    A case may have a function `terms()` as well, which gives what it adds to the equations.
+    """
+
+    @property
+    def name(self) -> str:
+        """Name by which the case is run."""
+
+    @property
+    def radius(self) -> float:
+        """Radius of the sphere, m."""
+
+    @property
+    def gravity(self) -> float:
+        """Acceleration of gravity, m/s2."""
+
+    @property
+    def prescribed_wind(self) -> bool:
+        """Whether the wind stays as it is at the start, so that only thickness evolves."""
+
+    def initial_state(self, mesh: VoronoiMesh, sampling: Sampling) -> State:
+        """State at time zero, thickness at the centres of cells or the mean over each."""
+
+    def topography_on(self, mesh: VoronoiMesh, sampling: Sampling) -> Array:
+        """Height of the bottom at the centres of cells or the mean over each, m."""
+
+    def coriolis_on(self, mesh: VoronoiMesh) -> Array:
+        """Coriolis parameter at vertices, 1/s."""
+
+    def parameters(self) -> dict[str, float]:
+        """Parameters of the case by name, for the record of the run."""
+
+
+@dataclass(frozen=True, eq=False)
+class CaseFields:
+    """A case on a mesh in metres: the fields that the equations need, their start, and terms that the case adds.
+
+    `kites_matter` where the thickness at a vertex may be outside of what its cells have, and is used.
+    """
+
+    case: Case
+    mesh: VoronoiMesh
+    topography: Array
+    coriolis: Array
+    state: State
+    forcings: tuple[Forcing, ...]
+    kites_matter: bool
+
+
+def case_fields(case: Case, mesh: VoronoiMesh, sampling: Sampling) -> CaseFields:
+    """The fields of `case` on `mesh`, scaled to its radius; raises `InputError` where they are not sound."""
+    mesh = mesh.scaled(case.radius)
+    topography = _asked(case, case.topography_on, mesh, sampling)
+    coriolis = _asked(case, case.coriolis_on, mesh)
+    check_field("topography", topography, mesh.n_cells)
+    check_field("coriolis", coriolis, mesh.n_vertices)
+    kites_matter = has_negative_kites(mesh) and not case.prescribed_wind
+    state = initial_state(case, mesh, sampling, kites_matter)
+    return CaseFields(case, mesh, topography, coriolis, state, _forcings(case), kites_matter)
+
+
+def initial_state(case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matter: bool) -> State:
+    """The state at time zero, at rest at walls; raises `InputError` where it is not sound."""
+    state = _asked(case, case.initial_state, mesh, sampling)
+    if not isinstance(state, State):
+        raise InputError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
+    check_field("initial thickness", state.thickness, mesh.n_cells)
+    check_field("initial normal velocity", state.normal_velocity, mesh.n_edges)
+    problem = problem_with_state(mesh, state)
+    if problem:
+        raise InputError(f"the initial {problem}; correct the parameters of {case.name}")
+    problem = problem_at_vertices(closed_mesh(mesh), state.thickness) if kites_matter else None
+    if problem:
+        raise InputError(f"the initial {problem}")
+    state.normal_velocity[wall_edges(mesh)] = 0.0
+    return state
+
+
+def _forcings(case: Case) -> tuple[Forcing, ...]:
+    """The terms that the case adds, none where it has no `terms`."""
+    terms = getattr(case, "terms", None)
+    if terms is None:
+        return ()
+    given = _asked(case, terms)
+    if not (isinstance(given, tuple | list) and all(isinstance(term, Forcing) for term in given)):
+        raise InputError(f"terms of {case.name} gives {given!r:.80}; it must give a tuple of swe.Forcing")
+    return tuple(given)
+
+
+def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
+    """What `function` of the case gives; a case may be the user's own, and fail in any way."""
+    try:
+        return function(*arguments)
+    except (InputError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:
+        raise InputError(f"{function.__name__} of {case.name} failed: {error!r}") from error
+
+
+def require_finite_integrals(integrals: dict[str, float], case_name: str) -> None:
+    """Raise `InputError` where a global integral is beyond the numbers, so that no change of it can be told."""
+    for name, value in integrals.items():
+        if not np.isfinite(value):
+            raise InputError(
+                f"the initial {name.replace('_', ' ')} is {value:g}, beyond the range of numbers; correct the "
+                f"parameters of {case_name}"
+            )

@@ -1,0 +1,75 @@
+"""From the fields of a case and the options of a run to the model: time step, terms, and what to warn of."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from mesh.discrete.walls import closed_mesh
+from swe.configuration import Configuration, Options
+from swe.equations.anticipation import Anticipation
+from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, courant_number
+from swe.equations.soundness import warning_of_vertices
+from swe.equations.terms import Term
+from swe.errors import InputError
+from swe.run.case import CaseFields
+from swe.stepping.schedule import dividing_step
+
+DEFAULT_COURANT_NUMBER = 0.8
+"""Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+
+
+def default_time_step(start: CaseFields, options: Options) -> float:
+    """Largest step, s, up to the default Courant number that divides the shorter output interval."""
+    case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
+    per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
+    if not np.isfinite(per_second):
+        raise InputError(f"the waves of {case.name} are too fast for numbers; correct its parameters")
+    # Where nothing moves, under a prescribed wind of zero, any step does.
+    return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
+
+
+def require_keeping_energy(integrator: str, terms: Sequence[Term]) -> None:
+    """Raise `InputError` where relaxation would undo what terms in the stages do to energy."""
+    changing = [term.name for term in terms if "total_energy" in term.changes and not term.after_steps]
+    if integrator == "rrk4" and changing:
+        raise InputError(f"rrk4 keeps total energy, which the term {changing[0]} changes; take the integrator rk4")
+
+
+def build_model(start: CaseFields, configuration: Configuration) -> ShallowWaterModel:
+    """The equations of a case with the terms that the options and the case ask for."""
+    terms: list[Term] = []
+    if configuration.anticipation > 0.0:
+        terms.append(Anticipation(closed_mesh(start.mesh), configuration.anticipation * configuration.time_step))
+    if configuration.dissipation > 0.0:
+        terms.append(BiharmonicDissipation(start.mesh, configuration.dissipation))
+    terms += start.forcings
+    case = start.case
+    return ShallowWaterModel(
+        start.mesh, start.topography, start.coriolis, case.gravity, case.prescribed_wind, terms=terms
+    )
+
+
+def warnings_before(
+    start: CaseFields, model: ShallowWaterModel, configuration: Configuration, initial_courant_number: float
+) -> Iterator[str]:
+    """What is likely to go wrong in the course of a run, in sentences."""
+    time_step = configuration.time_step
+    waves = time_step * STABLE_COURANT_NUMBER / max(initial_courant_number, 1e-300)
+    damping = min(
+        (term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)),
+        default=float("inf"),
+    )
+    if time_step > min(waves, damping):
+        cause = (
+            f"the Courant number is {initial_courant_number:.3g}"
+            if waves < damping
+            else "it is long for the dissipation"
+        )
+        yield (
+            f"a time step of {time_step:g} s is likely to be unstable, as {cause}; one of "
+            f"{0.95 * min(waves, damping):.3g} s would do"
+        )
+    thin = warning_of_vertices(model.closed, start.state.thickness) if start.kites_matter else None
+    if thin:
+        yield thin
