@@ -213,6 +213,7 @@ class ShallowWaterModel:
             mesh.dc_edge,
             result,
         )
+        result[self._walls] = 0.0  # where differences of a cell with itself leave round-off
 
     def diagnose(self, state: State) -> Diagnosis:
         """Fields that follow from `state`, as new arrays."""

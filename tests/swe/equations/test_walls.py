@@ -1,0 +1,125 @@
+"""The model on parts of spheres: three forms of one tendency, no flow through the cut, and all integrals kept."""
+
+import numba
+import numpy as np
+import pytest
+
+from cases import Williamson5
+from mesh import VoronoiMesh, build_operators
+from mesh.discrete.walls import closed_mesh, wall_edges
+from swe import ShallowWaterModel, Simulation, State
+from swe.diagnostics.budgets import measure_rates
+from swe.equations.anticipation import Anticipation
+from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.tendency import tendency
+from swe.equations.terms import Term
+from swe.stepping.time_stepping import RungeKutta
+from swe.tiles import cutting
+from swe.tiles.fused import FusedRungeKutta
+from tests.cut_mesh import without_cap, without_cells
+
+RADIUS = 6.4e6
+
+
+def random_setting(mesh: VoronoiMesh, *terms: Term) -> tuple[ShallowWaterModel, State]:
+    """Random fields, at rest at walls."""
+    random = np.random.default_rng(8)
+    scaled = mesh.scaled(RADIUS)
+    topography, coriolis = random.uniform(0.0, 500.0, mesh.n_cells), random.uniform(-1e-4, 1e-4, mesh.n_vertices)
+    model = ShallowWaterModel(scaled, topography, coriolis, 9.8, terms=terms)
+    velocity = random.uniform(-30.0, 30.0, mesh.n_edges)
+    velocity[wall_edges(mesh)] = 0.0
+    return model, State(random.uniform(900.0, 1100.0, mesh.n_cells), velocity)
+
+
+@pytest.fixture
+def part(any_mesh: VoronoiMesh) -> VoronoiMesh:
+    return without_cap(any_mesh)
+
+
+@pytest.mark.parametrize("cells_per_tile", [50, 10_000])
+def test_three_forms_of_the_tendency_agree(
+    part: VoronoiMesh, cells_per_tile: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    build = cutting.build_tiles
+    monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments: build(*arguments, cells_per_tile))
+    model, state = random_setting(part)
+    equation = tendency(state, build_operators(model.mesh), model.topography, model.coriolis, model.gravity)
+    plain, fused = state.empty_like(), state.empty_like()
+    model.tendency(state, plain)
+    FusedRungeKutta(model).tendency(state, fused)
+    size_h, size_u = np.abs(equation.thickness).max(), np.abs(equation.normal_velocity).max()
+    noise = 1e-10 if part.dv_edge.min() < 1e-3 else 1e-12
+    for found in (plain, fused):
+        np.testing.assert_allclose(found.thickness, equation.thickness, rtol=0, atol=1e-13 * size_h)
+        np.testing.assert_allclose(found.normal_velocity, equation.normal_velocity, rtol=0, atol=noise * size_u)
+        assert not found.normal_velocity[wall_edges(part)].any()
+    assert size_u > 1e-4
+
+
+def test_integrals_are_kept(part: VoronoiMesh) -> None:
+    """What the tendency does to mass, energy and absolute vorticity vanishes, relative to what cancels."""
+    model, state = random_setting(part)
+    mesh, diagnosis, slope = model.mesh, model.diagnose(state), state.empty_like()
+    FusedRungeKutta(model).tendency(state, slope)
+    flux = model.closed.dv_edge * state.thickness[model.closed.cells_on_edge].mean(axis=1) * state.normal_velocity
+    bernoulli = 9.8 * (state.thickness + model.topography) + diagnosis.kinetic_energy
+    work = mesh.dc_edge * flux * slope.normal_velocity
+    energy = work.sum() + (mesh.area_cell * bernoulli * slope.thickness).sum()
+    assert abs(energy) < 1e-13 * np.abs(mesh.area_cell * bernoulli * slope.thickness).sum()
+    assert abs(mesh.area_cell @ slope.thickness) < 1e-14 * (mesh.area_cell @ np.abs(slope.thickness))
+    turning = mesh.edge_signs_on_vertex * (mesh.dc_edge * slope.normal_velocity)[model.closed.edges_on_vertex]
+    assert abs(turning.sum()) < 1e-14 * np.abs(turning).sum()
+    rates = measure_rates(model, state, diagnosis, slope)
+    assert abs(rates["total_energy_rate_coriolis"]) < 1e-13 * np.abs(work).sum()
+    assert abs(rates["total_energy_rate_exchange"]) < 1e-13 * np.abs(work).sum()
+
+
+def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
+    if part.dv_edge.min() < 1e-3:
+        pytest.skip("gradients along edges of no length have no meaning")
+    scaled = part.scaled(RADIUS)
+    terms = (Anticipation(closed_mesh(scaled), 100.0), BiharmonicDissipation(scaled, 1e12))
+    model, state = random_setting(part, *terms)
+    for term in terms:
+        found = model.tendency_of(term, state)
+        assert np.isfinite(found.normal_velocity).all()
+        assert np.abs(found.normal_velocity).max() > 0.0
+        assert not found.normal_velocity[wall_edges(part)].any()
+    measure = model.mesh.dv_edge * model.mesh.dc_edge
+    random = np.random.default_rng(1)
+    u, v = random.normal(size=(2, part.n_edges))
+    u[wall_edges(part)] = v[wall_edges(part)] = 0.0
+    damping = terms[1]
+    on_u, on_v = damping.acceleration(u).copy(), damping.acceleration(v).copy()
+    assert (measure * u) @ on_v == pytest.approx((measure * v) @ on_u, rel=1e-9)
+    assert (measure * u) @ on_u < 0.0
+
+
+@pytest.mark.parametrize("options", [{}, {"integrator": "rrk4"}, {"anticipation": 0.5, "dissipation": 1e15}])
+def test_a_run_in_a_basin(larger_mesh: VoronoiMesh, options: dict[str, object]) -> None:
+    """Test case 5 where the tropics alone are left: mass and absolute vorticity stay, no wall lets anything pass."""
+    basin = without_cells(larger_mesh, np.abs(larger_mesh.lat_cell) > 1.0)
+    simulation = Simulation(basin, Williamson5(), **options)  # type: ignore[arg-type]
+    start, walls = simulation.initial_invariants, wall_edges(basin)
+    simulation.run(days=1, progress=False)
+    now = simulation.invariants
+    assert not simulation.state.normal_velocity[walls].any()
+    assert np.abs(simulation.state.normal_velocity).max() > 5.0
+    assert abs(now.mass / start.mass - 1.0) < 1e-14
+    assert abs(now.absolute_vorticity - start.absolute_vorticity) < 1e-14 * start.planetary_vorticity_magnitude
+    energy = abs(now.total_energy - start.total_energy) / start.available_energy
+    limit = {"rrk4": 1e-13}.get(str(options.get("integrator")), 1e-2 if options else 2e-4)
+    assert energy < limit
+
+
+def test_fused_and_plain_steps_agree(larger_mesh: VoronoiMesh) -> None:
+    model, state = random_setting(without_cap(larger_mesh))
+    plain, fused = state.copy(), state.copy()
+    RungeKutta(model.tendency, plain).advance(plain, 20.0, 3)
+    for threads in (1, 2):
+        numba.set_num_threads(threads)
+        fused = state.copy()
+        assert FusedRungeKutta(model).advance(fused, 20.0, 3) == 3
+        np.testing.assert_allclose(fused.thickness, plain.thickness, rtol=1e-12)
+        np.testing.assert_allclose(fused.normal_velocity, plain.normal_velocity, rtol=0, atol=1e-10)

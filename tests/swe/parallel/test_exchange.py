@@ -1,0 +1,183 @@
+"""Between stages the values of other processes arrive: two parts of a sphere give the bits of the whole."""
+
+import threading
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+
+from mesh import VoronoiMesh, mesh_from_points
+from mesh.arrays import Array
+from swe import ShallowWaterModel, State
+from swe.parallel.exact_sum import exact_sums
+from swe.parallel.processes import OneProcess
+from swe.stepping.time_stepping import RungeKutta
+from swe.tiles import cutting
+from swe.tiles.fused import FusedRungeKutta
+from tests.cut_mesh import FILL, without_cells
+
+RADIUS = 6.4e6
+STEPS = 3
+RINGS = 2
+"""Rings of cells round the own ones on which the tendency of these depends."""
+
+
+class Turns:
+    """Lets two threads compute in turns, as compiled loops of two cannot run at once, and meet where they exchange."""
+
+    def __init__(self) -> None:
+        self.turn = threading.Lock()
+        self._meeting = threading.Barrier(2, timeout=60.0)
+
+    def meet(self) -> None:
+        self.turn.release()
+        self._meeting.wait()
+        self.turn.acquire()
+
+
+class Part:
+    """One of two processes: `own` cells and edges are computed here, what else its mesh has by the other."""
+
+    alone = False
+
+    def __init__(self, whole: State, cells: Array, edges: Array, own: tuple[Array, Array], turns: Turns) -> None:
+        self._whole, self._cells, self._edges, self._own, self._turns = whole, cells, edges, own, turns
+        self.exchanges = 0
+
+    def exchange(self, state: State) -> None:
+        own_cells, own_edges = self._own
+        self._whole.thickness[self._cells[own_cells]] = state.thickness[own_cells]
+        self._whole.normal_velocity[self._edges[own_edges]] = state.normal_velocity[own_edges]
+        self._turns.meet()
+        state.thickness[:] = self._whole.thickness[self._cells]
+        state.normal_velocity[:] = self._whole.normal_velocity[self._edges]
+        self._turns.meet()
+        self.exchanges += 1
+
+    def exact_sums(self, rows: Array) -> list[float]:
+        return exact_sums(rows)
+
+    def sums(self, values: Array) -> Array:
+        return values
+
+    def largest(self, values: Array) -> Array:
+        return values
+
+
+def setting(mesh: VoronoiMesh) -> tuple[Array, Array, State]:
+    random = np.random.default_rng(5)
+    topography, coriolis = random.uniform(0.0, 500.0, mesh.n_cells), random.uniform(-1e-4, 1e-4, mesh.n_vertices)
+    state = State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
+    return topography, coriolis, state
+
+
+def widened(mesh: VoronoiMesh, cells: Array) -> Array:
+    """The marked cells and `RINGS` rings round them."""
+    for _ in range(RINGS):
+        beside = np.where(mesh.on_ring, mesh.cells_on_cell, 0)
+        cells = cells | (cells[beside] & mesh.on_ring).any(axis=1)
+    return cells
+
+
+def fused(model: ShallowWaterModel, _: State) -> FusedRungeKutta:
+    return FusedRungeKutta(model)
+
+
+def plain(model: ShallowWaterModel, state: State) -> RungeKutta:
+    return RungeKutta(model.tendency, state, exchange=model.processes.exchange)
+
+
+@pytest.mark.parametrize("method", [fused, plain])
+def test_two_parts_give_the_bits_of_the_whole(
+    larger_mesh: VoronoiMesh, method: Callable[[ShallowWaterModel, State], FusedRungeKutta | RungeKutta]
+) -> None:
+    mesh = larger_mesh.scaled(RADIUS)
+    topography, coriolis, start = setting(mesh)
+    expected = start.copy()
+    method(ShallowWaterModel(mesh, topography, coriolis, 9.8), expected).advance(expected, 20.0, STEPS)
+    shared, turns = start.copy(), Turns()
+    east = mesh.lon_cell < np.pi
+    first_cell_in_east = east[mesh.cells_on_edge[:, 0]]
+    parts, failures = [], []
+
+    def run(mine: Array, my_edges: Array) -> None:
+        with turns.turn:
+            try:
+                kept = widened(mesh, mine)
+                part = without_cells(mesh, ~kept)
+                cells = np.flatnonzero(kept)
+                edges = np.flatnonzero(kept[mesh.cells_on_edge].any(axis=1))
+                vertices = np.flatnonzero(kept[mesh.cells_on_vertex].any(axis=1))
+                process = Part(shared, cells, edges, (mine[cells], my_edges[edges]), turns)
+                state = State(start.thickness[cells], start.normal_velocity[edges])
+                model = ShallowWaterModel(part, topography[cells], coriolis[vertices], 9.8, processes=process)
+                assert (part.cells_on_edge == FILL).any()
+                assert method(model, state).advance(state, 20.0, STEPS) == STEPS
+                parts.append(process)
+            except BaseException as error:
+                failures.append(error)
+                turns._meeting.abort()
+                raise
+
+    threads = [
+        threading.Thread(target=run, args=arguments)
+        for arguments in ((east, first_cell_in_east), (~east, ~first_cell_in_east))
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not failures
+    assert [process.exchanges for process in parts] == [4 * STEPS, 4 * STEPS]
+    np.testing.assert_array_equal(shared.thickness, expected.thickness)
+    np.testing.assert_array_equal(shared.normal_velocity, expected.normal_velocity)
+    assert np.abs(expected.thickness - start.thickness).max() > 1e-3
+
+
+def test_a_process_alone_takes_the_compiled_steps(icosahedral_mesh: VoronoiMesh) -> None:
+    """With an exchange that does nothing the stages are called one by one, and give the same bits."""
+
+    class Idle(OneProcess):
+        alone = False
+
+    mesh = icosahedral_mesh.scaled(RADIUS)
+    topography, coriolis, start = setting(mesh)
+    states = []
+    for processes in (OneProcess(), Idle()):
+        state = start.copy()
+        model = ShallowWaterModel(mesh, topography, coriolis, 9.8, processes=processes)
+        assert FusedRungeKutta(model).advance(state, 20.0, STEPS) == STEPS
+        states.append(state)
+    np.testing.assert_array_equal(states[0].thickness, states[1].thickness)
+    np.testing.assert_array_equal(states[0].normal_velocity, states[1].normal_velocity)
+
+
+def test_values_arrive_in_any_order_of_the_tiles(
+    icosahedral_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On a shuffled mesh tiles have an order of their own; what arrives is told in the order of the mesh."""
+    build = cutting.build_tiles
+    monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments: build(*arguments, 60))
+    shuffled = mesh_from_points(
+        np.random.default_rng(0).permutation(icosahedral_mesh.cell_points), density_name="shuffled"
+    ).scaled(RADIUS)
+    topography, coriolis, start = setting(shuffled)
+    seen = []
+
+    class Telling(OneProcess):
+        alone = False
+
+        def exchange(self, state: State) -> None:
+            seen.append(state.copy())
+            state.thickness[0] = 1234.5
+
+    model = ShallowWaterModel(shuffled, topography, coriolis, 9.8, processes=Telling())
+    state, method = start.copy(), FusedRungeKutta(model)
+    assert method.tiles.cell_order is not None
+    method.advance(state, 20.0)
+    assert state.thickness[0] == 1234.5
+    assert len(seen) == 4
+    alone = start.copy()
+    FusedRungeKutta(ShallowWaterModel(shuffled, topography, coriolis, 9.8)).advance(alone, 20.0)
+    far = np.abs(shuffled.cell_points @ shuffled.cell_points[0]) < 0.5 * RADIUS**2
+    np.testing.assert_array_equal(seen[-1].thickness[far], alone.thickness[far])
