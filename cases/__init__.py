@@ -1,6 +1,6 @@
 """Test cases: parameters, initial and, where known, exact state; one paper a module."""
 
-from cases.base import Case
+from cases.base import Case, parameter
 from cases.galewsky import Galewsky
 from cases.lake_at_rest import LakeAtRest
 from cases.registry import CASES, find_case
@@ -16,4 +16,5 @@ __all__ = [
     "Williamson5",
     "Williamson6",
     "find_case",
+    "parameter",
 ]

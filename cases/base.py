@@ -4,8 +4,8 @@ import math
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
-from typing import Any, ClassVar
+from dataclasses import asdict, dataclass, field, fields
+from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
 
@@ -28,6 +28,16 @@ RADIUS_TOLERANCE = 1e-9
 LARGEST_ANGLE = 4.0 * math.pi
 """Two turns, radians: beyond, a number is likely to be in degrees."""
 
+Default = TypeVar("Default")
+
+
+def parameter(default: Default, units: str, meaning: str) -> Default:
+    """A parameter of a case, for the body of its class: `height: float = parameter(10.0, "m", "Height of the bump")`.
+
+    It is a field of a dataclass, whose metadata hold `units`, empty where there are none, and `meaning`.
+    """
+    return cast(Default, field(default=default, metadata={"units": units, "meaning": meaning}))
+
 
 @dataclass(frozen=True)
 class Case(ABC):
@@ -39,7 +49,7 @@ class Case(ABC):
     """
 
     name: ClassVar[str]
-    """What the user types."""
+    """What the user types; an object that comes from a file has its own, FILE.py:CLASS with the whole path."""
 
     title: ClassVar[str]
     """What it is, in a few words."""
@@ -60,21 +70,31 @@ class Case(ABC):
     prescribed_wind: ClassVar[bool] = False
     """Whether the wind stays as it is at the start, so that only thickness evolves."""
 
-    radius: float = EARTH_RADIUS
-    """Radius of the sphere, m."""
+    radius: float = parameter(EARTH_RADIUS, "m", "Radius of the sphere")
+    gravity: float = parameter(GRAVITY, "m/s2", "Acceleration of gravity")
+    rotation_rate: float = parameter(ROTATION_RATE, "1/s", "Angular velocity of the sphere")
 
-    gravity: float = GRAVITY
-    """Acceleration of gravity, m/s2."""
+    def __init_subclass__(cls) -> None:
+        super().__init_subclass__()
+        # A dataclass writes a `__repr__` of its own where it finds none in the class itself.
+        cls.__repr__ = cls.__repr__  # type: ignore[method-assign]
 
-    rotation_rate: float = ROTATION_RATE
-    """Angular velocity of the sphere, 1/s."""
+    def __repr__(self) -> str:
+        """Name, title and those parameters that are not the default."""
+        name, title = getattr(self, "name", type(self).__name__), getattr(self, "title", "no title")
+        changed = ", ".join(
+            f"{each.name} = {getattr(self, each.name)!r}"
+            for each in fields(self)
+            if repr(getattr(self, each.name)) != repr(plain(each.default))
+        )
+        return f"<Case {name} ({title})" + (f": {changed}>" if changed else ">")
 
     def __post_init__(self) -> None:
-        for field in fields(self):
-            value = plain(getattr(self, field.name))
-            if isinstance(field.default, float):
-                value = plain_number(field.name, value, InputError)
-            object.__setattr__(self, field.name, value)
+        for each in fields(self):
+            value = plain(getattr(self, each.name))
+            if isinstance(each.default, float):
+                value = plain_number(each.name, value, InputError)
+            object.__setattr__(self, each.name, value)
         for name, value in self.parameters().items():
             if isinstance(value, float) and not math.isfinite(value):
                 raise InputError(f"{name} is {value}; give a finite number")

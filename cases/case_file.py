@@ -35,19 +35,22 @@ def load_case(address: str) -> Case:
     found = _attribute(_imported(path), attribute, path)
     case = _made(found, address, path) if isinstance(found, type) else found
     _require_members(case, address, path)
-    return cast(Case, _named(case, f"{path}:{attribute}"))
+    return named(cast(Case, case), f"{path}:{attribute}")
 
 
-def _named(case: object, name: str) -> object:
-    """`case` under another name: a copy, of a class made for it, so that what the user wrote keeps its own."""
-    kind = type(case)
-    members = {"name": name, "__module__": kind.__module__, "__doc__": kind.__doc__}
+def named(case: Case, name: str) -> Case:
+    """`case` under another name: a copy that has it for itself, so that the class and what the user made keep theirs.
+
+    Raises `InputError` where it cannot have it.
+    """
     try:
-        named = copy.copy(case)
-        object.__setattr__(named, "__class__", type(kind.__name__, (kind,), members))
-    except TypeError as error:
-        raise InputError(f"{name} cannot be used ({error}); derive a class from cases.Case") from error
-    return named
+        copied = copy.copy(case)
+        object.__setattr__(copied, "name", name)
+    except (TypeError, AttributeError) as error:
+        raise InputError(
+            f"{name} cannot be used ({error}); derive a class from cases.Case whose name is no property"
+        ) from error
+    return copied
 
 
 def _imported(path: Path) -> ModuleType:

@@ -13,7 +13,7 @@ from typing import ClassVar
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 
-from cases.base import Case
+from cases.base import Case, parameter
 from mesh.arrays import Array
 from swe.errors import InputError
 
@@ -39,32 +39,15 @@ class Galewsky(Case):
     )
     recommended_days: ClassVar[float] = 6.0
 
-    perturbed: bool = True
-    """Whether the bump of height is added."""
-
-    wind_speed: float = 80.0
-    """Speed u_max in the middle of the jet, m/s."""
-
-    southern_edge: float = np.pi / 7.0
-    """Latitude phi_0 where the jet begins, rad."""
-
-    northern_edge: float = np.pi / 2.0 - np.pi / 7.0
-    """Latitude phi_1 where the jet ends, rad."""
-
-    mean_depth: float = 1.0e4
-    """Mean depth over the sphere, without the bump, m."""
-
-    bump_height: float = 120.0
-    """Height of the bump, m."""
-
-    bump_latitude: float = np.pi / 4.0
-    """Latitude phi_2 of the middle of the bump, rad; its longitude is 0."""
-
-    bump_width: float = 1.0 / 3.0
-    """Extent alpha of the bump in longitude, rad."""
-
-    bump_length: float = 1.0 / 15.0
-    """Extent beta of the bump in latitude, rad."""
+    perturbed: bool = parameter(True, "", "Whether the bump of height is added")
+    wind_speed: float = parameter(80.0, "m/s", "Speed u_max in the middle of the jet")
+    southern_edge: float = parameter(np.pi / 7.0, "rad", "Latitude phi_0 where the jet begins")
+    northern_edge: float = parameter(np.pi / 2.0 - np.pi / 7.0, "rad", "Latitude phi_1 where the jet ends")
+    mean_depth: float = parameter(1.0e4, "m", "Mean depth over the sphere, without the bump")
+    bump_height: float = parameter(120.0, "m", "Height of the bump")
+    bump_latitude: float = parameter(np.pi / 4.0, "rad", "Latitude phi_2 of the middle of the bump; its longitude is 0")
+    bump_width: float = parameter(1.0 / 3.0, "rad", "Extent alpha of the bump in longitude")
+    bump_length: float = parameter(1.0 / 15.0, "rad", "Extent beta of the bump in latitude")
 
     def __post_init__(self) -> None:
         super().__post_init__()

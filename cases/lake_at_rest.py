@@ -8,6 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from cases.base import parameter
 from cases.williamson import ConicalMountain
 from mesh.arrays import Array
 
@@ -26,8 +27,7 @@ class LakeAtRest(ConicalMountain):
     )
     recommended_days: ClassVar[float] = 5.0
 
-    surface_height: float = 5960.0
-    """Height of the surface, m."""
+    surface_height: float = parameter(5960.0, "m", "Height of the surface")
 
     @property
     def has_exact_solution(self) -> bool:

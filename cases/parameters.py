@@ -1,16 +1,14 @@
 """Parameters of a case: what they mean, and how they are set from text or from the record of a run."""
 
 import ast
-import inspect
 import math
 import operator
-import textwrap
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any, get_type_hints
 
 from cases.base import Case
-from cases.case_file import line_in
+from cases.case_file import line_in, named
 from swe.errors import InputError
 
 Value = float | bool | str
@@ -65,7 +63,7 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     if not is_dataclass(case):
         raise InputError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
     try:
-        return replace(case, **changed)
+        return named(replace(case, **changed), case.name)
     except InputError:
         raise
     except (Exception, SystemExit) as error:
@@ -120,22 +118,10 @@ def _arithmetic(node: ast.expr) -> float:
     raise ValueError
 
 
-def parameter_meanings(case: Case) -> dict[str, str]:
-    """First line of what stands below each parameter in the source of its class; nothing where it is not known."""
-    meanings = dict.fromkeys(case.parameters(), "")
-    for kind in reversed(type(case).__mro__):
-        meanings |= {name: text for name, text in _documented_fields(kind) if name in meanings}
-    return meanings
-
-
-def _documented_fields(kind: type[Any]) -> Iterable[tuple[str, str]]:
-    try:
-        body = ast.parse(textwrap.dedent(inspect.getsource(kind))).body[0]
-    except (OSError, TypeError, SyntaxError):
-        return
-    assert isinstance(body, ast.ClassDef)
-    for field, below in zip(body.body, body.body[1:], strict=False):
-        if not (isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)):
-            continue
-        if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant) and isinstance(below.value.value, str):
-            yield field.target.id, inspect.cleandoc(below.value.value).splitlines()[0]
+def units_and_meanings(case: Case) -> dict[str, tuple[str, str]]:
+    """Units and meaning of each parameter, as `cases.base.parameter` declares them; empty where nothing does."""
+    described: dict[str, Mapping[str, Any]] = {}
+    if is_dataclass(case):
+        described = {each.name: each.metadata for each in fields(case)}
+    metadata = {name: described.get(name, {}) for name in case.parameters()}
+    return {name: (str(each.get("units", "")), str(each.get("meaning", ""))) for name, each in metadata.items()}

@@ -8,7 +8,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from cases.base import Case
+from cases.base import Case, parameter
 from mesh.arrays import Array
 from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import EARTH_RADIUS, GRAVITY, SECONDS_PER_DAY
@@ -27,11 +27,12 @@ class SolidRotation(Case):
     The paper runs its test cases 1 and 2 with the angles 0, 0.05, pi/2 - 0.05 and pi/2.
     """
 
-    wind_speed: float = 2.0 * np.pi * EARTH_RADIUS / (12.0 * SECONDS_PER_DAY)
-    """Speed u0 at the equator of the rotation, m/s; once round the Earth in 12 days."""
-
-    angle: float = 0.0
-    """Angle alpha between the axis of the flow and the polar axis, rad."""
+    wind_speed: float = parameter(
+        2.0 * np.pi * EARTH_RADIUS / (12.0 * SECONDS_PER_DAY),
+        "m/s",
+        "Speed u0 at the equator of the rotation; once round the Earth in 12 days",
+    )
+    angle: float = parameter(0.0, "rad", "Angle alpha between the axis of the flow and the polar axis")
 
     @property
     def axis(self) -> Array:
@@ -77,20 +78,11 @@ class Williamson1(SolidRotation):
     convergence_order: ClassVar[float | None] = 1.5
     prescribed_wind: ClassVar[bool] = True
 
-    bell_height: float = 1000.0
-    """Height h0 of the bell, m."""
-
-    bell_radius: float = 1.0 / 3.0
-    """Distance R from the centre of the bell to its foot, rad."""
-
-    bell_longitude: float = 1.5 * np.pi
-    """Longitude of the centre at the start, rad."""
-
-    bell_latitude: float = 0.0
-    """Latitude of the centre at the start, rad."""
-
-    background_depth: float = 1000.0
-    """Thickness outside of the bell, m."""
+    bell_height: float = parameter(1000.0, "m", "Height h0 of the bell")
+    bell_radius: float = parameter(1.0 / 3.0, "rad", "Distance R from the centre of the bell to its foot")
+    bell_longitude: float = parameter(1.5 * np.pi, "rad", "Longitude of the centre at the start")
+    bell_latitude: float = parameter(0.0, "rad", "Latitude of the centre at the start")
+    background_depth: float = parameter(1000.0, "m", "Thickness outside of the bell")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -130,8 +122,7 @@ class Williamson2(SolidRotation):
     recommended_days: ClassVar[float] = 5.0
     convergence_order: ClassVar[float | None] = 1.85
 
-    reference_depth: float = 2.94e4 / GRAVITY
-    """Depth h0 at the equator of the rotation, m."""
+    reference_depth: float = parameter(2.94e4 / GRAVITY, "m", "Depth h0 at the equator of the rotation")
 
     @property
     def has_exact_solution(self) -> bool:
@@ -152,17 +143,12 @@ class Williamson2(SolidRotation):
 class ConicalMountain(Case):
     """The isolated mountain of test case 5."""
 
-    mountain_height: float = 2000.0
-    """Height h_s0 of the mountain's peak, m."""
-
-    mountain_radius: float = np.pi / 9.0
-    """Distance R, in longitude and latitude, from the peak to the foot, rad."""
-
-    mountain_longitude: float = 1.5 * np.pi
-    """Longitude of the peak, rad, in [0, 2 pi)."""
-
-    mountain_latitude: float = np.pi / 6.0
-    """Latitude of the peak, rad."""
+    mountain_height: float = parameter(2000.0, "m", "Height h_s0 of the mountain's peak")
+    mountain_radius: float = parameter(
+        np.pi / 9.0, "rad", "Distance R, in longitude and latitude, from the peak to the foot"
+    )
+    mountain_longitude: float = parameter(1.5 * np.pi, "rad", "Longitude of the peak, in [0, 2 pi)")
+    mountain_latitude: float = parameter(np.pi / 6.0, "rad", "Latitude of the peak")
 
     def __post_init__(self) -> None:
         super().__post_init__()
@@ -189,11 +175,8 @@ class Williamson5(ConicalMountain):
     reference: ClassVar[str] = REFERENCE
     recommended_days: ClassVar[float] = 15.0
 
-    wind_speed: float = 20.0
-    """Speed u0 at the equator, m/s."""
-
-    reference_depth: float = 5960.0
-    """Height h0 of the free surface at the equator, m."""
+    wind_speed: float = parameter(20.0, "m/s", "Speed u0 at the equator")
+    reference_depth: float = parameter(5960.0, "m", "Height h0 of the free surface at the equator")
 
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Equation (95) less the topography."""
@@ -227,17 +210,12 @@ class Williamson6(Case):
     reference: ClassVar[str] = REFERENCE
     recommended_days: ClassVar[float] = 14.0
 
-    wave_number: int = 4
-    """Zonal wave number R."""
-
-    angular_velocity: float = 7.848e-6
-    """Angular velocity omega of the zonal flow, 1/s."""
-
-    wave_amplitude: float = 7.848e-6
-    """Amplitude K of the wave, 1/s."""
-
-    polar_depth: float = 8000.0
-    """Constant part h0 of the depth, m; the depth at the poles where the wave number is above 1."""
+    wave_number: int = parameter(4, "", "Zonal wave number R")
+    angular_velocity: float = parameter(7.848e-6, "1/s", "Angular velocity omega of the zonal flow")
+    wave_amplitude: float = parameter(7.848e-6, "1/s", "Amplitude K of the wave")
+    polar_depth: float = parameter(
+        8000.0, "m", "Constant part h0 of the depth; the depth at the poles where the wave number is above 1"
+    )
 
     def __post_init__(self) -> None:
         super().__post_init__()

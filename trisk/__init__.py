@@ -11,7 +11,7 @@ _PLACES = {
     "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
     "cases": (
         *("CASES", "Case", "Galewsky", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5", "Williamson6"),
-        "find_case",
+        *("find_case", "parameter"),
     ),
 }
 _PACKAGE_OF = {name: package for package, names in _PLACES.items() for name in names}

@@ -7,7 +7,7 @@ import pytest
 
 from cases import CASES, Case, Galewsky, LakeAtRest, Williamson1, Williamson2, Williamson5, Williamson6, find_case
 from cases.differences import gradient, laplacian
-from cases.parameters import parameter_meanings
+from cases.parameters import units_and_meanings
 from mesh import VoronoiMesh, build_operators
 from mesh.arrays import Array
 from mesh.discrete.operators import normal_velocity_from_streamfunction
@@ -46,7 +46,7 @@ def test_every_case_is_found_by_its_name_and_documented() -> None:
         assert case.name == name
         assert "doi.org" in case.reference
         assert case.parameters()["radius"] == 6371220.0
-        assert all(parameter_meanings(case).values())
+        assert all(meaning for _, meaning in units_and_meanings(case).values())
         assert f"| `{name}` |" in page
         assert f"| {case.recommended_days:g} |" in page
         assert case.convergence_order is None or case.has_exact_solution

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cases import Williamson1, Williamson2, find_case
-from cases.parameters import parameter_meanings, split_settings
+from cases.parameters import split_settings, units_and_meanings
 from mesh import VoronoiMesh
 from swe import Simulation
 from swe.errors import InputError
@@ -88,7 +88,7 @@ def test_unknown_case_is_refused_with_the_choices() -> None:
 
 def test_example_of_the_documentation(splash: Path, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     case = find_case(f"{splash}:Splash", {"height": "50"})
-    assert parameter_meanings(case)["height"] == "Height of the bump, m."
+    assert units_and_meanings(case)["height"] == ("m", "Height of the bump")
     simulation = Simulation(icosahedral_mesh, case, tmp_path / "run")
     assert simulation.state.thickness.max() == pytest.approx(4050.0, abs=10.0)
     simulation.run(days=0.5, progress=False)
@@ -98,6 +98,18 @@ def test_example_of_the_documentation(splash: Path, icosahedral_mesh: VoronoiMes
     again = find_case(record["case"], record["parameters"])
     assert again.parameters() == case.parameters()
     assert again.parameters()["height"] == 50.0
+
+
+def test_case_of_an_earlier_file_has_parameters_without_meaning(tmp_path: Path) -> None:
+    """Parameters were plain fields with a string below them."""
+    path = tmp_path / "earlier.py"
+    field = '    depth: float = 3.0\n    """Depth of the ocean, m."""\n'
+    path.write_text(HEAD + "@dataclass(frozen=True)\nclass Mine(Case):\n" + field + METHODS)
+    case = find_case(f"{path}:Mine", {"depth": "4"})
+    assert case.parameters()["depth"] == 4.0
+    described = units_and_meanings(case)
+    assert described["depth"] == ("", "")
+    assert described["radius"] == ("m", "Radius of the sphere")
 
 
 def test_relative_path_becomes_absolute(splash: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -139,6 +151,32 @@ def test_case_of_this_package_keeps_its_name(tmp_path: Path) -> None:
     path.write_text("from cases import Williamson2\nturned = Williamson2(angle=0.3)\n")
     assert find_case(f"{path}:turned").name == f"{path}:turned"
     assert Williamson2.name == "williamson2"
+    assert find_case("williamson2", {"angle": 0.3}).name == "williamson2"
+
+
+def test_names_of_a_file_leave_its_own_objects_as_they_are(splash: Path) -> None:
+    """One object of a file under two names: each case has its own, and the class is the one of the file."""
+    splash.write_text(splash.read_text() + "\nhigh = low = Splash(height=99.0)\nSplash.name = 'splash'\n")
+    cases = [find_case(f"{splash}:{name}", {"width": 0.2}) for name in ("high", "low")]
+    assert [case.name for case in cases] == [f"{splash}:high", f"{splash}:low"]
+    assert [type(case).name for case in cases] == ["splash", "splash"]
+    assert type(cases[0]).__name__ == "Splash"
+
+
+def test_case_that_cannot_be_named_is_refused(splash: Path) -> None:
+    splash.write_text(splash.read_text() + "\n    @property\n    def name(self):\n        return 'splash'\n")
+    with pytest.raises(
+        InputError, match=r"splash.py:Splash cannot be used \(.*\); derive a class from cases.Case whose"
+    ):
+        find_case(f"{splash}:Splash")
+
+
+def test_cases_show_name_title_and_what_is_not_the_default(splash: Path) -> None:
+    title = "Williamson test case 2: steady geostrophic flow"
+    assert repr(Williamson2()) == f"<Case williamson2 ({title})>"
+    assert repr(Williamson2(angle=np.float32(0.5))) == f"<Case williamson2 ({title}): angle = 0.5>"
+    case = find_case(f"{splash}:Splash", {"height": 50.0, "gravity": 9})
+    assert repr(case) == f"<Case {splash}:Splash (Splash): gravity = 9.0, height = 50.0>"
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from cases import Case
-from cases.parameters import parameter_meanings
+from cases.parameters import units_and_meanings
 
 
 def print_cases(cases: Iterable[Case]) -> None:
@@ -23,17 +23,17 @@ def print_cases(cases: Iterable[Case]) -> None:
 
 
 def print_case(case: Case) -> None:
-    """Print what is known of `case`, and its parameters with their values and meanings."""
+    """Print what is known of `case`, and its parameters with their values, units and meanings."""
     exact, order = _accuracy(case)
     console = Console()
     console.print(escape(case.title), style="bold")
     if case.reference:
         console.print(escape(case.reference))
     console.print(f"recommended days: {case.recommended_days:g}; exact solution: {exact}; order: {order}")
-    table = Table("parameter", "default", "meaning", title=f"Parameters of {escape(case.name)}")
-    meanings = parameter_meanings(case)
+    table = Table("parameter", "default", "units", "meaning", title=f"Parameters of {escape(case.name)}")
+    described = units_and_meanings(case)
     for name, value in case.parameters().items():
-        table.add_row(name, escape(_in_words(value)), escape(meanings[name]))
+        table.add_row(name, escape(_in_words(value)), *map(escape, described[name]))
     console.print(table)
 
 

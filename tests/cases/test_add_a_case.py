@@ -1,0 +1,65 @@
+"""A case is added as `docs/architecture.md` says: a dataclass in a file, which runs as any other."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from cases import find_case
+from mesh import VoronoiMesh
+from swe import Simulation
+from trisk.cli.case_table import print_case
+
+FILE = '''
+from dataclasses import dataclass
+from typing import ClassVar
+
+import numpy as np
+
+from cases import Case, parameter
+
+
+@dataclass(frozen=True)
+class Vortex(Case):
+    """A vortex over the pole, its surface level."""
+
+    title: ClassVar[str] = "Vortex over the pole"
+    recommended_days: ClassVar[float] = 2.0
+
+    depth: float = parameter(5000.0, "m", "Depth of the fluid")
+    wind_speed: float = parameter(20.0, "m/s", "Speed of the wind at 45 degrees")
+
+    def thickness(self, longitude, latitude, time=0.0):
+        return self.depth
+
+    def streamfunction(self, longitude, latitude, time=0.0):
+        return -self.radius * self.wind_speed * np.sin(latitude) ** 2
+'''
+HOUR = 1.0 / 24.0
+
+
+@pytest.fixture
+def address(tmp_path: Path) -> str:
+    """The file with the case, and the name of the class."""
+    path = tmp_path / "vortex.py"
+    path.write_text(FILE)
+    return f"{path}:Vortex"
+
+
+def test_an_added_case_runs_for_an_hour(address: str, icosahedral_mesh: VoronoiMesh) -> None:
+    case = find_case(address, {"wind_speed": "30"})
+    assert case.name == address
+    simulation = Simulation(icosahedral_mesh, case)
+    speed = np.abs(simulation.state.normal_velocity).max()
+    assert speed == pytest.approx(30.0, rel=0.1)
+    simulation.run(days=HOUR, progress=False)
+    assert simulation.time == 3600.0
+    assert np.ptp(simulation.state.thickness) > 1.0  # the level surface does not balance the wind
+    assert abs(simulation.invariants.mass / Simulation(icosahedral_mesh, case).invariants.mass - 1.0) < 1e-14
+
+
+def test_an_added_case_shows_its_parameters(address: str, capsys: pytest.CaptureFixture[str]) -> None:
+    print_case(find_case(address))
+    rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
+    assert "depth 5000 m Depth of the fluid".split() in rows
+    assert ["wind_speed", "20", "m/s"] in [row[:3] for row in rows]
