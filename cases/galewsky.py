@@ -15,6 +15,7 @@ from scipy.interpolate import CubicHermiteSpline
 
 from cases.base import Case, parameter
 from mesh.arrays import Array
+from mesh.geometry.angles import about_zero
 from swe.errors import InputError
 
 PANELS = 4096
@@ -100,7 +101,7 @@ class Galewsky(Case):
 
     def _bump(self, longitude: Array, latitude: Array) -> Array:
         """Height, m, that is added: equation (4), with longitude in (-pi, pi)."""
-        east = (longitude + np.pi) % (2.0 * np.pi) - np.pi
+        east = about_zero(longitude)
         exponent = -((east / self.bump_width) ** 2) - ((self.bump_latitude - latitude) / self.bump_length) ** 2
         return self.bump_height * np.cos(latitude) * np.exp(exponent)
 

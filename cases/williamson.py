@@ -10,6 +10,7 @@ import numpy as np
 
 from cases.base import Case, parameter
 from mesh.arrays import Array
+from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import arc_length, from_lonlat
 from swe.constants import EARTH_RADIUS, GRAVITY, SECONDS_PER_DAY
 from swe.errors import InputError
@@ -157,7 +158,7 @@ class ConicalMountain(Case):
 
     def topography(self, longitude: Array, latitude: Array) -> Array:
         """Equation (134): a cone in the plane of longitude and latitude."""
-        from_peak = (longitude - self.mountain_longitude + np.pi) % (2.0 * np.pi) - np.pi
+        from_peak = about_zero(longitude - self.mountain_longitude)
         distance = np.minimum(self.mountain_radius, np.hypot(from_peak, latitude - self.mountain_latitude))
         return self.mountain_height * (1.0 - distance / self.mountain_radius)
 

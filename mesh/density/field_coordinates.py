@@ -14,6 +14,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError, MeshWarning
+from mesh.geometry.angles import TURN
 
 DEGREES = re.compile(r"(?:deg|degrees?|°)[_ ]?(north|n|east|e|true|t)?")
 RADIANS = re.compile(r"rad|radians?")
@@ -150,7 +151,7 @@ def _in_radians(
     without = [variable.name for variable, known in zip(variables, in_degrees, strict=True) if known is None]
     if without:
         known = [degrees for degrees in in_degrees if degrees is not None]
-        small = np.abs(values[0]).max() <= np.pi + ROUND_OFF and np.abs(values[1]).max() <= 2.0 * np.pi + ROUND_OFF
+        small = np.abs(values[0]).max() <= np.pi + ROUND_OFF and np.abs(values[1]).max() <= TURN + ROUND_OFF
         assumed = known[0] if known else not small
         unit = "degrees" if assumed else "radians"
         _tell(f"{path}: {' and '.join(without)} without units, taken for {unit}; set the attribute units to be sure")

@@ -11,11 +11,11 @@ from mesh.density.field_coordinates import QUARTER
 from mesh.density.named import Density
 from mesh.density.scattered import tell_of_part
 from mesh.errors import MeshError
+from mesh.geometry.angles import TURN, eastward
 from mesh.geometry.sphere import to_lonlat
 
 Smooth = Callable[[Array], Array]
 
-TURN = 2.0 * np.pi
 WIDEST_GAP = 1.5
 """A grid covers the globe where no gap between its rows or columns is wider than the others by more than this."""
 
@@ -34,7 +34,7 @@ def density_on_grid(
     """
     latitude, rows = np.unique(latitude, return_index=True)
     # Both ends of a full circle are one meridian.
-    longitude, columns = np.unique(np.round(longitude % TURN, 12) % TURN, return_index=True)
+    longitude, columns = np.unique(eastward(np.round(eastward(longitude), 12)), return_index=True)
     if len(latitude) < 2:
         raise MeshError(f"{name} has one latitude; a grid needs two at least")
     gaps = np.diff(longitude, append=longitude[0] + TURN)
@@ -46,7 +46,7 @@ def density_on_grid(
     # Where there is a gap, the columns begin after it.
     first = 0 if whole_circle else (int(gaps.argmax()) + 1) % len(gaps)
     west = 0.0 if whole_circle else longitude[first]
-    longitude, columns = (np.roll(longitude, -first) - west) % TURN, np.roll(columns, -first)
+    longitude, columns = eastward(np.roll(longitude, -first) - west), np.roll(columns, -first)
     edge: Literal["wrap", "edge"] = "wrap" if whole_circle else "edge"
     values = shape(values[np.ix_(rows, columns)], lambda values: _smooth_grid(values, edge))
     south, north = (_cap(latitude[end], sign, values[end], whole_height) for end, sign in ((0, -1.0), (-1, 1.0)))
@@ -57,7 +57,7 @@ def density_on_grid(
 
     def density(points: Array) -> Array:
         east, north = to_lonlat(points)
-        return interpolate(np.stack([north, (east - west) % TURN], axis=-1))
+        return interpolate(np.stack([north, eastward(east - west)], axis=-1))
 
     return density
 

@@ -19,6 +19,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
+from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
 
 Density = Callable[[Array], Array]
@@ -42,7 +43,7 @@ class RefinedCircle:
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
         longitude, latitude = to_lonlat(points)
-        distance = np.hypot(latitude - self.latitude, _wrapped(longitude - self.longitude))
+        distance = np.hypot(latitude - self.latitude, about_zero(longitude - self.longitude))
         return _blend(distance - self.radius, self.transition, self.ratio)
 
 
@@ -61,7 +62,7 @@ class RefinedBox:
         """Values (m,) at unit vectors (m, 3)."""
         longitude, latitude = to_lonlat(points)
         middle, half_width = 0.5 * (self.west + self.east), 0.5 * (self.east - self.west)
-        beyond_side = np.maximum(np.abs(_wrapped(longitude - middle)) - half_width, 0.0)
+        beyond_side = np.maximum(np.abs(about_zero(longitude - middle)) - half_width, 0.0)
         beyond_end = np.maximum(np.maximum(self.south - latitude, latitude - self.north), 0.0)
         return _blend(np.hypot(beyond_side, beyond_end), self.transition, self.ratio)
 
@@ -136,8 +137,3 @@ def _blend(distance: Array, transition: float, ratio: float) -> Array:
     """ratio^4 where `distance` is not positive, one beyond the transition, the fourth power of a line in between."""
     share = np.clip(distance / transition, 0.0, 1.0)
     return ((1.0 - share) * ratio + share) ** 4
-
-
-def _wrapped(angle: Array) -> Array:
-    """Angle in [-pi, pi)."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi

@@ -7,6 +7,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.discrete.metrics import edge_angles
+from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import dot
 from mesh.voronoi_mesh import Metrics, VoronoiMesh
 
@@ -62,7 +63,7 @@ def metric_differences(mesh: VoronoiMesh, exact: Metrics) -> Iterator[Difference
         name, latitude = place.capitalize(), getattr(exact, f"lat_{place}")
         north = _difference(mesh, exact, f"lat_{place}", 1.0)
         yield _angle(f"lat{name}", f"lat_{place}", place, north, north / size[place])
-        turn = _wrapped(_difference(mesh, exact, f"lon_{place}", 1.0))
+        turn = about_zero(_difference(mesh, exact, f"lon_{place}", 1.0))
         yield _angle(f"lon{name}", f"lon_{place}", place, turn, turn * np.cos(latitude) / size[place])
 
 
@@ -71,7 +72,7 @@ def angle_difference(mesh: VoronoiMesh, exact: Metrics) -> Difference:
 
     At a pole the longitude is arbitrary, and the angle counts from the east that it defines.
     """
-    turn = _wrapped(mesh.angle_edge - angles_in_place(mesh, exact))
+    turn = about_zero(mesh.angle_edge - angles_in_place(mesh, exact))
     return _angle("angleEdge", "angle_edge", "edge", turn, turn)
 
 
@@ -92,11 +93,6 @@ def _local_sizes(mesh: VoronoiMesh, exact: Metrics) -> dict[str, Array]:
 
 def _difference(mesh: VoronoiMesh, exact: Metrics, name: str, unit: float) -> Array:
     return getattr(mesh, name) / unit - getattr(exact, name)
-
-
-def _wrapped(angle: Array) -> Array:
-    """The angle in [-pi, pi)."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
 
 
 def _relative(label: str, names: tuple[str, ...], place: str, relative: Array) -> Difference:

@@ -13,6 +13,7 @@ from mesh.discrete.validate import OUTSIDE_TOLERANCE, check_values, require_on_s
 from mesh.errors import MeshError, require
 from mesh.files.arrange import arrange_kites, arrange_weights, arranged_topology, reordered, topology_in_order
 from mesh.files.mesh_file import SPARE, FileContent
+from mesh.geometry.angles import TURN, eastward
 from mesh.geometry.sphere import dot, from_lonlat, normalize
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
@@ -187,8 +188,8 @@ def _metrics_of_file(arrays: dict[str, NDArray], topology: Topology, exact: Metr
             )
     for place in ("cell", "edge", "vertex"):
         longitude = metrics.get(f"lon_{place}")
-        if longitude is not None and not np.all((longitude >= 0.0) & (longitude < 2.0 * np.pi)):
-            metrics[f"lon_{place}"] = longitude % (2.0 * np.pi)
+        if longitude is not None and not np.all((longitude >= 0.0) & (longitude < TURN)):
+            metrics[f"lon_{place}"] = eastward(longitude)
     return metrics
 
 

@@ -7,6 +7,7 @@ differences of nearby points, so that their relative error does not grow as mesh
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.geometry.angles import eastward_of_half_turns
 
 
 def dot(a: Array, b: Array) -> Array:
@@ -45,10 +46,7 @@ def circumcenter(a: Array, b: Array, c: Array) -> Array:
 def to_lonlat(points: Array) -> tuple[Array, Array]:
     """Longitude in [0, 2 pi) and latitude in [-pi/2, pi/2], radians, of points (..., 3) of any length."""
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
-    longitude = np.arctan2(y, x)
-    longitude = np.where(longitude < 0.0, longitude + 2.0 * np.pi, longitude)
-    longitude = np.where(longitude >= 2.0 * np.pi, 0.0, longitude)
-    return longitude, np.arctan2(z, np.hypot(x, y))
+    return eastward_of_half_turns(np.arctan2(y, x)), np.arctan2(z, np.hypot(x, y))
 
 
 def from_lonlat(longitude: Array, latitude: Array) -> Array:

@@ -14,6 +14,7 @@ from matplotlib.patches import Circle, Ellipse, Patch
 from mesh.arrays import Array
 from mesh.discrete.operators import vertex_to_cell
 from mesh.discrete.quality import mesh_quality, neighbour_distance_ratio, triangle_quality
+from mesh.geometry.angles import whole_degrees_east
 from mesh.geometry.sphere import from_lonlat
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
@@ -111,8 +112,8 @@ def _draw_mollweide_graticule(axes: Axes) -> None:
         axes.text(x - 0.05, y, _latitude_label(degrees), ha="right", va="center", fontsize=7)
     for degrees in (-120, -60, 0, 60, 120):
         x, _ = mollweide(np.array(np.radians(degrees)), np.array(0.0))
-        longitude = (degrees + round(np.degrees(CENTRAL_LONGITUDE))) % 360
-        axes.text(x, 0.03, f"{longitude}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
+        east = whole_degrees_east(float(np.radians(degrees)) + CENTRAL_LONGITUDE)
+        axes.text(x, 0.03, f"{east}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
     axes.set_xlim(-3.2, 2.9)
     axes.set_ylim(-1.48, 1.48)
 

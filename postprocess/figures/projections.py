@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Array, Index
+from mesh.geometry.angles import TURN, about_zero
 from mesh.geometry.sphere import dot, from_lonlat, normalize, to_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -74,11 +75,11 @@ def mollweide_polygons(mesh: VoronoiMesh, central_longitude: float) -> Polygons:
     corners = cell_corners(mesh)
     center = _from_meridian(mesh.lon_cell, central_longitude)
     longitude, latitude = to_lonlat(corners)
-    longitude = center[:, None] + _wrapped(longitude - mesh.lon_cell[:, None])
+    longitude = center[:, None] + about_zero(longitude - mesh.lon_cell[:, None])
     steps = np.abs(np.diff(longitude, axis=1, append=longitude[:, :1]))
     near_pole = (steps.max(axis=1) > LONG_SIDE) | (np.abs(latitude).max(axis=1) > 0.5 * np.pi - ON_THE_POLE)
     outlines = mollweide(longitude, latitude)
-    shift = np.where(longitude.max(axis=1) > np.pi, -2.0 * np.pi, 2.0 * np.pi)
+    shift = np.where(longitude.max(axis=1) > np.pi, -TURN, TURN)
     on_seam = (np.abs(longitude).max(axis=1) > np.pi) & ~near_pole
     copies = mollweide(longitude[on_seam] + shift[on_seam, None], latitude[on_seam])
     polar_outlines, polar_cells = [], []
@@ -102,13 +103,8 @@ def orthographic_polygons(mesh: VoronoiMesh, longitude: float, latitude: float) 
     return Polygons(list(np.where(depth[..., None] > 0.0, flat, at_limb)), np.flatnonzero(visible))
 
 
-def _wrapped(angle: Array) -> Array:
-    """Angle in [-pi, pi)."""
-    return (angle + np.pi) % (2.0 * np.pi) - np.pi
-
-
 def _from_meridian(longitude: Array, central_longitude: float) -> Array:
-    return _wrapped(longitude - central_longitude)
+    return about_zero(longitude - central_longitude)
 
 
 def _outlines_near_pole(corners: Array, cell_longitude: float, center: float) -> list[Array]:
@@ -120,8 +116,8 @@ def _outlines_near_pole(corners: Array, cell_longitude: float, center: float) ->
         [_side(start, end) for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     )
     longitude, latitude = to_lonlat(points)
-    longitude = center + _wrapped(longitude - cell_longitude)
-    turns = (-2.0 * np.pi, 0.0, 2.0 * np.pi)
+    longitude = center + about_zero(longitude - cell_longitude)
+    turns = (-TURN, 0.0, TURN)
     if not _surrounds_pole(corners):
         return [mollweide(longitude + turn, latitude) for turn in turns]
     # The cell is all that lies poleward of its sides: a strip across the map, closed beyond the rim.
@@ -140,7 +136,7 @@ def _side(start: Array, end: Array) -> Array:
         pole = to_pole / (to_pole + beyond)
         way = np.linspace(-1.0, 1.0, 4 * POINTS_ON_LONG_SIDE + 1)[:-1]
         fraction = pole + np.where(way < 0.0, -pole, 1.0 - pole) * way**2
-    elif abs(_wrapped(np.subtract(*to_lonlat(np.stack([start, end]))[0]))) > LONG_SIDE:
+    elif abs(about_zero(np.subtract(*to_lonlat(np.stack([start, end]))[0]))) > LONG_SIDE:
         fraction = np.linspace(0.0, 1.0, POINTS_ON_LONG_SIDE, endpoint=False)
     else:
         return start[None, :]

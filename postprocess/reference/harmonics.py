@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
+from mesh.geometry.angles import eastward
 from swe.errors import InputError
 
 try:
@@ -109,7 +110,7 @@ class Harmonics:
         return np.stack([-self._inverse_root * divergence, -self._inverse_root * vorticity])
 
     def _synthesize(self, coefficients: Coefficients, spin: int, longitude: Array, latitude: Array) -> Array:
-        places = np.stack([0.5 * np.pi - latitude.ravel(), longitude.ravel() % (2.0 * np.pi)], axis=-1)
+        places = np.stack([0.5 * np.pi - latitude.ravel(), eastward(longitude.ravel())], axis=-1)
         values: Array = ducc0.sht.synthesis_general(
             alm=coefficients,
             spin=spin,

@@ -9,6 +9,7 @@ from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array, Index
+from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import normalize
 from postprocess.figures.plots import CENTRAL_LONGITUDE, draw_mollweide
 from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
@@ -106,7 +107,7 @@ def _colour_bar(figure: Figure, axes: Axes, drawn: PolyCollection) -> None:
 
 def _on_map(member: Member, cells: Sequence[int] | Index) -> tuple[Array, Array]:
     """Coordinates of cells on the Mollweide map."""
-    longitude = (member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE + np.pi) % (2.0 * np.pi) - np.pi
+    longitude = about_zero(member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE)
     x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
     return x, y
 
