@@ -16,6 +16,7 @@ from mesh.arrays import Array, Index
 from mesh.density.named import Density
 from mesh.errors import MeshError, MeshWarning
 from mesh.geometry.sphere import fibonacci_points, mean_spacing, normalize
+from mesh.geometry.vectors import triple_product, vector_between, vector_to
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.half_edges import build_twins, first_corners
 
@@ -118,10 +119,8 @@ def _bucket(x: float, y: float, z: float, resolution: int) -> int:
 @numba.njit(cache=True)
 def _determinant(points: Array, point: int, centers: Array, a: int, b: int) -> float:
     """det(a, b, point), from differences, so that it vanishes exactly where the point is a or b."""
-    x, y, z = points[point, 0], points[point, 1], points[point, 2]
-    ax, ay, az = centers[a, 0] - x, centers[a, 1] - y, centers[a, 2] - z
-    bx, by, bz = centers[b, 0] - x, centers[b, 1] - y, centers[b, 2] - z
-    return x * (ay * bz - az * by) + y * (az * bx - ax * bz) + z * (ax * by - ay * bx)
+    to_a, to_b = vector_between(points, point, centers, a), vector_between(points, point, centers, b)
+    return triple_product(vector_to(points, point), to_a, to_b)
 
 
 @numba.njit(cache=True)

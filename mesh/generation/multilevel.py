@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.generation.generators import bisect, icosahedral_mesh
+from mesh.geometry.vectors import triple_product, vector_to
 from mesh.triangulation.ordering import hilbert_order, inverse_order
 
 Single = NDArray[np.float32]
@@ -106,13 +107,7 @@ def _prolong_parallel(coarse: Array, targets: Index, weights: Single, fine: Arra
 @numba.njit(cache=True)
 def _side_of(points: Array, point: int, grid: Array, a: int, b: int) -> float:
     """det(a, b, point), positive to the left of the arc a -> b."""
-    ax, ay, az = grid[a, 0], grid[a, 1], grid[a, 2]
-    bx, by, bz = grid[b, 0], grid[b, 1], grid[b, 2]
-    return (
-        points[point, 0] * (ay * bz - az * by)
-        + points[point, 1] * (az * bx - ax * bz)
-        + points[point, 2] * (ax * by - ay * bx)
-    )
+    return triple_product(vector_to(points, point), vector_to(grid, a), vector_to(grid, b))
 
 
 @numba.njit(parallel=True, cache=True)

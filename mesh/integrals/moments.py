@@ -19,10 +19,13 @@ by Gauss quadrature. d = |u|^2 / 2 at the corners and e = q t (1 - t) / 2 + ... 
 terms, hence so is the energy: steps of an optimiser can be judged by it down to round-off of its change.
 """
 
+from typing import Any
+
 import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
+from mesh.geometry.vectors import triple_product, vector_between, vector_to
 
 BLOCK = 1024
 """Cells whose contributions one partial sum holds: sums do not depend on the number of threads."""
@@ -35,14 +38,19 @@ _nodes, _weights = np.polynomial.legendre.leggauss(8)
 NODES = 0.5 * (1.0 + _nodes)
 WEIGHTS = 0.5 * _weights
 
+OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
+contracted = numba.njit(**OPTIONS)
+"""A product and a sum may be rounded as one. Numba gives a function without options those of whatever calls it first:
+functions that state theirs have the same last digits in any order. None of these calls `mesh.geometry.vectors`."""
 
-@numba.njit(cache=True)
+
+@contracted
 def _small_excess(square: float) -> float:
     """The value of s / sin(s) - 1 for an arc s with squared chord below SMALL."""
     return square * (1 / 6 + square * (1 / 30 + square * (1 / 140 + square / 630)))
 
 
-@numba.njit(cache=True)
+@contracted
 def _excess(square: float) -> float:
     """The value of s / sin(s) - 1 for an arc s below pi with any squared chord."""
     if square < SMALL:
@@ -51,20 +59,20 @@ def _excess(square: float) -> float:
     return np.arcsin(half) / (half * np.sqrt(1.0 - half * half)) - 1.0
 
 
-@numba.njit(cache=True)
+@contracted
 def _small_sag(square: float) -> float:
     """1 - sqrt(1 - square) for a small square."""
     return square * (1 / 2 + square * (1 / 8 + square * (1 / 16 + square * (5 / 128))))
 
 
-@numba.njit(cache=True)
+@contracted
 def _small_integrand(drop: float, sag: float) -> float:
     """2 (d - e) / ((2 - d - e) (1 - e)^2) for small d and e."""
     mean = 0.5 * (drop + sag)
     return (drop - sag) * (1.0 + mean * (1.0 + mean * (1.0 + mean))) * (1.0 + sag * (2.0 + sag * (3.0 + 4.0 * sag)))
 
 
-@numba.njit(cache=True)
+@contracted
 def _small_side(drop: float, next_drop: float, square: float) -> float:
     """Integral of the energy along a short side close to the generator."""
     outer_sag, middle_sag = _small_sag(0.1 * square), _small_sag(0.25 * square)
@@ -74,7 +82,7 @@ def _small_side(drop: float, next_drop: float, square: float) -> float:
     ) + 8 / 36 * _small_integrand(0.5 * (drop + next_drop), middle_sag)
 
 
-@numba.njit(cache=True)
+@contracted
 def _large_side(drop: float, next_drop: float, square: float) -> float:
     """Integral of the energy along any side, eight nodes."""
     total = 0.0
@@ -87,7 +95,7 @@ def _large_side(drop: float, next_drop: float, square: float) -> float:
     return total
 
 
-@numba.njit(cache=True)
+@contracted
 def cell_moment(
     points: Array, circumcenters: Array, ring_starts: Index, rings: Index, cell: int
 ) -> tuple[float, float, float, float]:
@@ -135,7 +143,7 @@ def cell_moment(
     )
 
 
-@numba.njit(parallel=True, cache=True, error_model="numpy", fastmath={"contract"})
+@numba.njit(parallel=True, **OPTIONS)
 def evaluate(
     points: Array,
     circumcenters: Array,
@@ -179,15 +187,27 @@ def evaluate(
         partials[block, 2] = largest
 
 
-@numba.njit(parallel=True, cache=True, error_model="numpy")
+@numba.njit(cache=True, fastmath=False)
+def _triangle_area(points: Array, cell: int, circumcenters: Array, before: int, after: int) -> float:
+    """Area of the spherical triangle (x, c, c') of a generator x and two circumcentres.
+
+    tan(area / 2) = x.(u x u') / (1 + x.c + c.c' + c'.x) is free of cancellation.
+    """
+    x, y, z = vector_to(points, cell)
+    c, d = vector_to(circumcenters, before), vector_to(circumcenters, after)
+    u = vector_between(points, cell, circumcenters, before)
+    v = vector_between(points, cell, circumcenters, after)
+    denominator = (
+        1.0 + x * (c[0] + d[0]) + y * (c[1] + d[1]) + z * (c[2] + d[2]) + c[0] * d[0] + c[1] * d[1] + c[2] * d[2]
+    )
+    return 2.0 * np.arctan2(triple_product((x, y, z), u, v), denominator)
+
+
+@numba.njit(parallel=True, cache=True, error_model="numpy", fastmath=False)
 def masses_and_moments(
     points: Array, circumcenters: Array, ring_starts: Index, rings: Index
 ) -> tuple[Array, Array, Array]:
-    """Areas (n,), first moments (n, 3) and energies (n,) of all cells.
-
-    The area is a sum of spherical triangles (x, c, c'), each by
-    tan(area / 2) = x.(u x u') / (1 + x.c + c.c' + c'.x), free of cancellation.
-    """
+    """Areas (n,), first moments (n, 3) and energies (n,) of all cells."""
     masses = np.empty(len(points))
     moments = np.empty((len(points), 3))
     energies = np.empty(len(points))
@@ -195,25 +215,10 @@ def masses_and_moments(
         mx, my, mz, energy = cell_moment(points, circumcenters, ring_starts, rings, cell)
         moments[cell, 0], moments[cell, 1], moments[cell, 2] = mx, my, mz
         energies[cell] = energy
-        x, y, z = points[cell, 0], points[cell, 1], points[cell, 2]
-        c = circumcenters[rings[ring_starts[cell + 1] - 1]]
-        mass = 0.0
+        before, mass = rings[ring_starts[cell + 1] - 1], 0.0
         for slot in range(ring_starts[cell], ring_starts[cell + 1]):
-            d = circumcenters[rings[slot]]
-            ux, uy, uz = c[0] - x, c[1] - y, c[2] - z
-            vx, vy, vz = d[0] - x, d[1] - y, d[2] - z
-            volume = x * (uy * vz - uz * vy) + y * (uz * vx - ux * vz) + z * (ux * vy - uy * vx)
-            denominator = (
-                1.0
-                + x * (c[0] + d[0])
-                + y * (c[1] + d[1])
-                + z * (c[2] + d[2])
-                + c[0] * d[0]
-                + c[1] * d[1]
-                + c[2] * d[2]
-            )
-            mass += 2.0 * np.arctan2(volume, denominator)
-            c = d
+            mass += _triangle_area(points, cell, circumcenters, before, rings[slot])
+            before = rings[slot]
         masses[cell] = mass
     return masses, moments, energies
 

@@ -25,9 +25,8 @@ from mesh.density.named import Density, density_at
 from mesh.density.scaling import within_range
 from mesh.errors import MeshError
 from mesh.geometry.sphere import to_lonlat
+from mesh.geometry.vectors import triple_product, vector_between, vector_to
 from mesh.integrals.moments import BLOCK
-
-Vector = tuple[float, float, float]
 
 CHUNK = 16384
 """Cells whose quadrature points are held at a time."""
@@ -49,16 +48,6 @@ RULE = np.array(
 """Seven points of order five, exact for polynomials of degree five on the triangle s, t >= 0, s + t <= 1."""
 
 
-@numba.njit(cache=True)
-def _arms(points: Array, circumcenters: Array, cell: int, triangle: int) -> Vector:
-    """Vector from the generator of a cell to one of its corners."""
-    return (
-        circumcenters[triangle, 0] - points[cell, 0],
-        circumcenters[triangle, 1] - points[cell, 1],
-        circumcenters[triangle, 2] - points[cell, 2],
-    )
-
-
 @numba.njit(parallel=True, cache=True)
 def _quadrature_points(
     points: Array, circumcenters: Array, ring_starts: Index, rings: Index, first: int, last: int, nodes: Array
@@ -66,10 +55,10 @@ def _quadrature_points(
     """Write the quadrature points of the cells first to last - 1 to `nodes`, ring after ring."""
     for cell in numba.prange(first, last):
         start, stop = ring_starts[cell], ring_starts[cell + 1]
-        u = _arms(points, circumcenters, cell, rings[stop - 1])
+        u = vector_between(points, cell, circumcenters, rings[stop - 1])
         row = len(RULE) * (start - ring_starts[first])
         for slot in range(start, stop):
-            v = _arms(points, circumcenters, cell, rings[slot])
+            v = vector_between(points, cell, circumcenters, rings[slot])
             for node in range(len(RULE)):
                 s, t = RULE[node, 0], RULE[node, 1]
                 x = points[cell, 0] + s * u[0] + t * v[0]
@@ -79,16 +68,6 @@ def _quadrature_points(
                 nodes[row, 0], nodes[row, 1], nodes[row, 2] = factor * x, factor * y, factor * z
                 row += 1
             u = v
-
-
-@numba.njit(cache=True)
-def _triple(points: Array, cell: int, u: Vector, v: Vector) -> float:
-    """Triple product x.(u x v) for the generator x of a cell."""
-    return (
-        points[cell, 0] * (u[1] * v[2] - u[2] * v[1])
-        + points[cell, 1] * (u[2] * v[0] - u[0] * v[2])
-        + points[cell, 2] * (u[0] * v[1] - u[1] * v[0])
-    )
 
 
 @numba.njit(parallel=True, cache=True)
@@ -109,13 +88,13 @@ def _sum_cells(
     for cell in numba.prange(first, last):
         start, stop = ring_starts[cell], ring_starts[cell + 1]
         px, py, pz = points[cell, 0], points[cell, 1], points[cell, 2]
-        u = _arms(points, circumcenters, cell, rings[stop - 1])
+        u = vector_between(points, cell, circumcenters, rings[stop - 1])
         row = len(RULE) * (start - ring_starts[first])
         mass, radial, energy = 0.0, 0.0, 0.0
         mx, my, mz = 0.0, 0.0, 0.0
         for slot in range(start, stop):
-            v = _arms(points, circumcenters, cell, rings[slot])
-            area = _triple(points, cell, u, v)
+            v = vector_between(points, cell, circumcenters, rings[slot])
+            area = triple_product(vector_to(points, cell), u, v)
             for node in range(len(RULE)):
                 s, t = RULE[node, 0], RULE[node, 1]
                 qx = s * u[0] + t * v[0]

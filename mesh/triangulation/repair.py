@@ -14,8 +14,7 @@ import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
-
-Vector = tuple[float, float, float]
+from mesh.geometry.vectors import Vector, cross_product, dot_product, triangle_normal, vector_between, vector_to
 
 HEIGHT_TOLERANCE = 1.0e-15
 """Height over a triangle's plane, in radii, above which a corner calls for a flip: a few units in the last place."""
@@ -29,8 +28,8 @@ ARITHMETIC_TOLERANCE = 16 * 2.2e-16
 BLOCK = 2048
 """Triangles that one thread looks at in one go."""
 
-INVERTED = 8
-"""Bit of a mark that tells of an inverted or flat triangle."""
+SIDES, INVERTED = 7, 8
+"""Bits of a mark: of the three sides that are not Delaunay, and of an inverted or flat triangle."""
 
 STACK_SIZE = 1 << 16
 FLIPS_PER_POINT = 30
@@ -38,41 +37,17 @@ FLIPS_PER_POINT = 30
 
 
 @numba.njit(cache=True)
-def _subtract(points: Array, end: int, start: int) -> Vector:
-    """Components of points[end] - points[start]."""
-    return (points[end, 0] - points[start, 0], points[end, 1] - points[start, 1], points[end, 2] - points[start, 2])
-
-
-@numba.njit(cache=True)
-def _cross(u: Vector, v: Vector) -> Vector:
-    """Cross product of two 3-tuples."""
-    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
-
-
-@numba.njit(cache=True)
-def _dot(u: Vector, v: Vector) -> float:
-    """Dot product of two 3-tuples."""
-    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
-
-
-@numba.njit(cache=True)
-def _normal(points: Array, a: int, b: int, c: int) -> Vector:
-    """(b - a) x (c - a): points outwards, to the circumcenter of the triangle."""
-    return _cross(_subtract(points, b, a), _subtract(points, c, a))
-
-
-@numba.njit(cache=True)
 def _volume(points: Array, a: int, normal: Vector) -> float:
-    """A . normal, that is det(a, b, c): positive for a well oriented triangle."""
-    return points[a, 0] * normal[0] + points[a, 1] * normal[1] + points[a, 2] * normal[2]
+    """The product a.normal, that is det(a, b, c): positive for a well oriented triangle."""
+    return dot_product(vector_to(points, a), normal)
 
 
 @numba.njit(cache=True)
 def _place_circumcenter(points: Array, triangles: Index, triangle: int, circumcenters: Array) -> bool:
     """Write the circumcenter of one triangle; False if inverted or flat."""
     a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
-    normal = _normal(points, a, b, c)
-    factor = 1.0 / np.sqrt(_dot(normal, normal))
+    normal = triangle_normal(points, a, b, c)
+    factor = 1.0 / np.sqrt(dot_product(normal, normal))
     circumcenters[triangle, 0] = normal[0] * factor
     circumcenters[triangle, 1] = normal[1] * factor
     circumcenters[triangle, 2] = normal[2] * factor
@@ -143,21 +118,24 @@ def survey(
 @numba.njit(cache=True)
 def _opens_well(points: Array, a: int, b: int, c: int, d: int) -> bool:
     """True where both triangles (c, a, d) and (d, b, c) are positively oriented."""
-    return _volume(points, c, _normal(points, c, a, d)) > 0.0 and _volume(points, d, _normal(points, d, b, c)) > 0.0
+    return (
+        _volume(points, c, triangle_normal(points, c, a, d)) > 0.0
+        and _volume(points, d, triangle_normal(points, d, b, c)) > 0.0
+    )
 
 
 @numba.njit(cache=True)
 def _must_flip(points: Array, a: int, b: int, c: int, d: int) -> bool:
     """Whether d is above the plane a, b, c beyond round-off, and both new triangles are positively oriented."""
-    to_b = _subtract(points, b, a)
-    to_c = _subtract(points, c, a)
-    to_d = _subtract(points, d, a)
-    normal = _cross(to_b, to_c)
-    determinant = _dot(normal, to_d)
+    to_b = vector_between(points, a, points, b)
+    to_c = vector_between(points, a, points, c)
+    to_d = vector_between(points, a, points, d)
+    normal = cross_product(to_b, to_c)
+    determinant = dot_product(normal, to_d)
     if not determinant > 0.0:
         return False
-    lengths = np.sqrt(_dot(to_b, to_b) * _dot(to_c, to_c) * _dot(to_d, to_d))
-    allowed = HEIGHT_TOLERANCE * np.sqrt(_dot(normal, normal)) + ARITHMETIC_TOLERANCE * lengths
+    lengths = np.sqrt(dot_product(to_b, to_b) * dot_product(to_c, to_c) * dot_product(to_d, to_d))
+    allowed = HEIGHT_TOLERANCE * np.sqrt(dot_product(normal, normal)) + ARITHMETIC_TOLERANCE * lengths
     if determinant <= allowed:
         return False
     return _opens_well(points, a, b, c, d)
@@ -240,6 +218,21 @@ def _settle_edge(
     return flips
 
 
+@numba.njit(cache=True)
+def _marked(marks: Index, counts: Index, bits: int) -> Index:
+    """Triangles, in order, with one of the `bits` in their mark; `counts` tells of each block how many there may be."""
+    found = np.empty(min(counts.sum(), len(marks)), np.int64)
+    number = 0
+    for block in range(len(counts)):
+        if counts[block] == 0:
+            continue
+        for triangle in range(block * BLOCK, min((block + 1) * BLOCK, len(marks))):
+            if marks[triangle] & bits:
+                found[number] = triangle
+                number += 1
+    return found[:number]
+
+
 @numba.njit(cache=True, error_model="numpy")
 def flip_marked(
     points: Array,
@@ -257,27 +250,15 @@ def flip_marked(
     """
     stack = np.empty(STACK_SIZE, np.int32)
     limit = 1000 + FLIPS_PER_POINT * len(points)
+    arrays = (points, triangles, twins, first_corner, degrees, circumcenters)
     flips = 0
-    for block in range(len(violations)):
-        if violations[block] == 0:
-            continue
-        for triangle in range(block * BLOCK, min((block + 1) * BLOCK, len(triangles))):
-            for k in range(3):
-                if marks[triangle] & (1 << k):
-                    made = _settle_edge(
-                        points,
-                        triangles,
-                        twins,
-                        first_corner,
-                        degrees,
-                        circumcenters,
-                        3 * triangle + k,
-                        stack,
-                        limit - flips,
-                    )
-                    if made < 0:
-                        return -1
-                    flips += made
+    for triangle in _marked(marks, violations, SIDES):
+        for k in range(3):
+            if marks[triangle] & (1 << k):
+                made = _settle_edge(*arrays, 3 * triangle + k, stack, limit - flips)
+                if made < 0:
+                    return -1
+                flips += made
     return flips
 
 
@@ -287,28 +268,22 @@ def untangle(
 ) -> int:
     """Flip a side of each inverted triangle where that leaves two good ones.
 
-    A point that has just crossed the opposite side of its triangle is set
-    right by turning that side.  Serial, in order of the triangles; returns the
-    number of flips.
+    A point that has just crossed the opposite side of its triangle is set right by turning that side. Serial, in order
+    of the triangles; returns the number of flips.
     """
     flips = 0
     corners = triangles.ravel()
-    for block in range(len(inversions)):
-        if inversions[block] == 0:
-            continue
-        for triangle in range(block * BLOCK, min((block + 1) * BLOCK, len(triangles))):
-            if not marks[triangle] & INVERTED:
-                continue
-            for k in range(3):
-                a, b = triangles[triangle, (k + 1) % 3], triangles[triangle, (k + 2) % 3]
-                c, twin = triangles[triangle, k], twins[triangle, k]
-                if (
-                    _volume(points, c, _normal(points, c, a, b)) <= 0.0
-                    and degrees[a] > 3
-                    and degrees[b] > 3
-                    and _opens_well(points, a, b, c, corners[twin])
-                ):
-                    flip(triangles, twins, first_corner, degrees, 3 * triangle + k, twin)
-                    flips += 1
-                    break
+    for triangle in _marked(marks, inversions, INVERTED):
+        for k in range(3):
+            a, b = triangles[triangle, (k + 1) % 3], triangles[triangle, (k + 2) % 3]
+            c, twin = triangles[triangle, k], twins[triangle, k]
+            if (
+                _volume(points, c, triangle_normal(points, c, a, b)) <= 0.0
+                and degrees[a] > 3
+                and degrees[b] > 3
+                and _opens_well(points, a, b, c, corners[twin])
+            ):
+                flip(triangles, twins, first_corner, degrees, 3 * triangle + k, twin)
+                flips += 1
+                break
     return flips

@@ -9,25 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-
-
-@numba.njit(cache=True)
-def chord(points: Array, a: int, b: int) -> float:
-    """Distance of two points."""
-    x = points[a, 0] - points[b, 0]
-    y = points[a, 1] - points[b, 1]
-    z = points[a, 2] - points[b, 2]
-    return np.sqrt(x * x + y * y + z * z)
-
-
-@numba.njit(cache=True)
-def _orientation(points: Array, a: int, b: int, c: int) -> float:
-    """det(a, b, c), positive for a counter-clockwise triangle."""
-    return (
-        points[a, 0] * (points[b, 1] * points[c, 2] - points[b, 2] * points[c, 1])
-        + points[a, 1] * (points[b, 2] * points[c, 0] - points[b, 0] * points[c, 2])
-        + points[a, 2] * (points[b, 0] * points[c, 1] - points[b, 1] * points[c, 0])
-    )
+from mesh.geometry.vectors import chord, determinant
 
 
 @numba.njit(cache=True)
@@ -35,7 +17,7 @@ def quality_of_triangle(points: Array, a: int, b: int, c: int) -> float:
     """The quality q of one triangle, negative if it is inverted."""
     u, v, w = chord(points, b, c), chord(points, c, a), chord(points, a, b)
     q = (v + w - u) * (w + u - v) * (u + v - w) / (u * v * w)
-    return q if _orientation(points, a, b, c) > 0.0 else -q
+    return q if determinant(points, a, b, c) > 0.0 else -q
 
 
 @numba.njit(cache=True)

@@ -1,5 +1,8 @@
 """A case is added as `docs/architecture.md` says: a dataclass in a file, which runs as any other."""
 
+import os
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -8,7 +11,6 @@ import pytest
 from cases import find_case
 from mesh import VoronoiMesh
 from swe import Simulation
-from trisk.cli.case_table import print_case
 
 FILE = '''
 from dataclasses import dataclass
@@ -58,8 +60,9 @@ def test_an_added_case_runs_for_an_hour(address: str, icosahedral_mesh: VoronoiM
     assert abs(simulation.invariants.mass / Simulation(icosahedral_mesh, case).invariants.mass - 1.0) < 1e-14
 
 
-def test_an_added_case_shows_its_parameters(address: str, capsys: pytest.CaptureFixture[str]) -> None:
-    print_case(find_case(address))
-    rows = [line.replace("│", " ").split() for line in capsys.readouterr().out.splitlines()]
+def test_an_added_case_shows_its_parameters(address: str) -> None:
+    command = [sys.executable, "-m", "trisk", "cases", address]
+    shown = subprocess.run(command, capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "200"})
+    rows = [line.replace("│", " ").split() for line in shown.stdout.splitlines()]
     assert ["depth", "5000", "m", "Depth", "of", "the", "fluid"] in rows
     assert ["wind_speed", "20", "m/s"] in [row[:3] for row in rows]

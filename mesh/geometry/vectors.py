@@ -1,0 +1,68 @@
+"""Vectors in space for compiled code: three numbers each, formed of rows of arrays of points (n, 3).
+
+`mesh.geometry.sphere` does the same for whole arrays. Products take differences of nearby points where that keeps their
+relative error from growing as meshes get finer.
+"""
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array
+
+Vector = tuple[float, float, float]
+
+compiled = numba.njit(cache=True, fastmath=False)
+"""A function without options would get those of whatever calls it first, and with them other last digits."""
+
+
+@compiled
+def vector_to(points: Array, point: int) -> Vector:
+    """The vector from the origin to a point."""
+    return (points[point, 0], points[point, 1], points[point, 2])
+
+
+@compiled
+def vector_between(origins: Array, start: int, points: Array, end: int) -> Vector:
+    """The vector from origins[start] to points[end]."""
+    return (
+        points[end, 0] - origins[start, 0],
+        points[end, 1] - origins[start, 1],
+        points[end, 2] - origins[start, 2],
+    )
+
+
+@compiled
+def dot_product(u: Vector, v: Vector) -> float:
+    """The product u.v."""
+    return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]
+
+
+@compiled
+def cross_product(u: Vector, v: Vector) -> Vector:
+    """The product u x v."""
+    return (u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0])
+
+
+@compiled
+def triple_product(u: Vector, v: Vector, w: Vector) -> float:
+    """The product u.(v x w), the determinant of the three: positive where they run counter-clockwise from outside."""
+    return dot_product(u, cross_product(v, w))
+
+
+@compiled
+def chord(points: Array, a: int, b: int) -> float:
+    """Distance, in a straight line, of two points."""
+    way = vector_between(points, b, points, a)
+    return np.sqrt(dot_product(way, way))
+
+
+@compiled
+def triangle_normal(points: Array, a: int, b: int, c: int) -> Vector:
+    """(b - a) x (c - a): twice the area of the flat triangle; its direction is that of the circumcentre."""
+    return cross_product(vector_between(points, a, points, b), vector_between(points, a, points, c))
+
+
+@compiled
+def determinant(points: Array, a: int, b: int, c: int) -> float:
+    """Triple product of three points, from their positions."""
+    return triple_product(vector_to(points, a), vector_to(points, b), vector_to(points, c))
