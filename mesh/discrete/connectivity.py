@@ -113,9 +113,10 @@ def _check_vertices(mesh: Topology) -> None:
     )
     uses = np.bincount(mesh.edges_on_vertex.ravel(), minlength=mesh.n_edges)
     require(uses == 2, "edges", "edgesOnVertex does not list the edge at exactly two vertices")
-    pairs = np.stack([np.roll(mesh.cells_on_vertex, 1, axis=1), mesh.cells_on_vertex], axis=2)
+    before, after = np.roll(mesh.cells_on_vertex, 1, axis=1), mesh.cells_on_vertex
+    first, second = mesh.cells_on_edge.T[:, mesh.edges_on_vertex]
     require(
-        np.sort(pairs, axis=2) == np.sort(mesh.cells_on_edge[mesh.edges_on_vertex], axis=2),
+        ((first == before) & (second == after)) | ((first == after) & (second == before)),
         "vertices",
         "cellsOnVertex does not lie between one edge and the next in edgesOnVertex",
     )
@@ -133,7 +134,8 @@ def _check_edges(mesh: Topology) -> None:
         offset = 0 if side == 0 else size[:, 0] - 1
         for step in range(1, mesh.max_edges):
             inside = step < size[:, side]
-            expected = ring[edge, (position + step) % size[:, side]]
+            place = position + step
+            expected = ring[edge, np.where(place < size[:, side], place, place - size[:, side])]
             found = mesh.edges_on_edge[edge, np.where(inside, offset + step - 1, 0)]
             require(
                 (found == expected) | ~inside,
