@@ -19,7 +19,7 @@ LONGEST_SHOWN = 80
 
 KINDS = {float: "a number", int: "a whole number", bool: "true or false"}
 
-OPERATORS: dict[type[ast.operator], Callable[[float, float], float]] = {
+ARITHMETIC: dict[type[ast.operator], Callable[[float, float], float]] = {
     ast.Add: operator.add,
     ast.Sub: operator.sub,
     ast.Mult: operator.mul,
@@ -111,8 +111,8 @@ def _arithmetic(node: ast.expr) -> float:
         return float(node.value)
     if isinstance(node, ast.Name) and node.id == "pi":
         return math.pi
-    if isinstance(node, ast.BinOp) and type(node.op) in OPERATORS:
-        return OPERATORS[type(node.op)](_arithmetic(node.left), _arithmetic(node.right))
+    if isinstance(node, ast.BinOp) and type(node.op) in ARITHMETIC:
+        return ARITHMETIC[type(node.op)](_arithmetic(node.left), _arithmetic(node.right))
     if isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
         return -_arithmetic(node.operand)
     raise ValueError

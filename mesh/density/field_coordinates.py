@@ -28,7 +28,7 @@ AXES = {"latitude": ("y", "yc"), "longitude": ("x", "xc")}
 
 COLATITUDE = re.compile(r"co-?lat", re.IGNORECASE)
 
-ROUND_OFF = 1e-5
+ANGLE_ROUNDING = 1e-5
 """By so much, in radians, coordinates in single precision may miss the poles."""
 
 QUARTER = 0.5 * np.pi
@@ -63,7 +63,7 @@ def read_coordinates(file: netCDF4.Dataset, field: netCDF4.Variable, path: str |
     if colatitude:
         _tell(f"{path}: {latitude.name} is taken for co-latitude, which counts from the north pole")
         north = QUARTER - north
-    if not np.abs(north).max() <= QUARTER + ROUND_OFF:
+    if not np.abs(north).max() <= QUARTER + ANGLE_ROUNDING:
         raise MeshError(
             f"{path}: {latitude.name} goes from {_degrees(north.min())} to {_degrees(north.max())} degrees, which "
             "are no latitudes; mend its values or its units, or name it colatitude if it counts from the north pole"
@@ -151,7 +151,7 @@ def _in_radians(
     without = [variable.name for variable, known in zip(variables, in_degrees, strict=True) if known is None]
     if without:
         known = [degrees for degrees in in_degrees if degrees is not None]
-        small = np.abs(values[0]).max() <= np.pi + ROUND_OFF and np.abs(values[1]).max() <= TURN + ROUND_OFF
+        small = np.abs(values[0]).max() <= np.pi + ANGLE_ROUNDING and np.abs(values[1]).max() <= TURN + ANGLE_ROUNDING
         assumed = known[0] if known else not small
         unit = "degrees" if assumed else "radians"
         _tell(f"{path}: {' and '.join(without)} without units, taken for {unit}; set the attribute units to be sure")

@@ -20,7 +20,7 @@ from mesh.voronoi_mesh import TOPOLOGY_NAMES, Topology
 
 Arrays = dict[str, NDArray]
 
-COUNTS = {"n_edges_on_cell": "cells", "n_edges_on_edge": "edges"}
+EDGE_COUNTS = {"n_edges_on_cell": "cells", "n_edges_on_edge": "edges"}
 
 
 def topology_in_order(arrays: Arrays, points: Array) -> Topology | None:
@@ -53,7 +53,7 @@ def arranged_topology(arrays: Arrays, points: Array) -> Topology:
     if cells_on_edge is not None:
         _require_cells("cells_on_edge", cells_on_edge, n_cells)
     topology = connect(turn_triangles(_counter_clockwise(triangles, points)), n_cells, cells_on_edge)
-    for name in COUNTS:
+    for name in EDGE_COUNTS:
         if name in arrays:
             _require_count(name, arrays[name], getattr(topology, name))
     for name in TOPOLOGY_NAMES:
@@ -126,7 +126,7 @@ def _require_cells(name: str, cells: Index, n_cells: int) -> None:
 def _require_count(name: str, found: Index, expected: Index) -> None:
     require(
         found == expected,
-        COUNTS[name],
+        EDGE_COUNTS[name],
         f"{BY_NAME[name].file_name} is not the number of edges that cellsOnVertex gives; correct or remove it",
     )
 

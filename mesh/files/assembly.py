@@ -29,7 +29,7 @@ ON_EDGES = tuple(name for name, variable in BY_NAME.items() if "n_edges" in (var
 
 
 @dataclass
-class Changes:
+class FileChanges:
     """What was done to the content of a file, in words."""
 
     said: list[str] = field(default_factory=list)
@@ -50,13 +50,13 @@ class Changes:
         return "; ".join(parts)
 
 
-def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[VoronoiMesh, Changes]:
+def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[VoronoiMesh, FileChanges]:
     """The mesh of a file, not yet validated for its identities, and what was changed on the way.
 
     Needed are generators and triangles. Raises `MeshError` where they are missing, where connectivity contradicts
     itself, or where metrics that the solver uses are not those of the generators.
     """
-    arrays, changes = dict(content.arrays), Changes()
+    arrays, changes = dict(content.arrays), FileChanges()
     points, radius = _generators(arrays, content.radius, changes)
     topology = _topology(arrays, points, changes)
     exact = compute_metrics(points, topology)
@@ -79,7 +79,7 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     return _with_metrics_of_file(rebuilt, exact, metrics, changes), changes
 
 
-def _generators(arrays: dict[str, NDArray], attribute: object, changes: Changes) -> tuple[Array, float]:
+def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChanges) -> tuple[Array, float]:
     """Unit vectors (n_cells, 3) of the generators, and the radius of the sphere."""
     if all(name in arrays for name in GENERATORS):
         points = np.stack([arrays[name] for name in GENERATORS], axis=1)
@@ -120,7 +120,7 @@ def _positive(attribute: object) -> float | None:
     return number if np.isfinite(number) and number > 0.0 else None
 
 
-def _radius_of(points: Array, distance: Array, attribute: object, changes: Changes) -> float:
+def _radius_of(points: Array, distance: Array, attribute: object, changes: FileChanges) -> float:
     """The radius of the sphere that the generators lie on, whatever the attribute says."""
     radius = float(np.median(distance))
     if not radius > 0.0:
@@ -135,7 +135,7 @@ def _radius_of(points: Array, distance: Array, attribute: object, changes: Chang
     return radius
 
 
-def _topology(arrays: dict[str, NDArray], points: Array, changes: Changes) -> Topology:
+def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges) -> Topology:
     """Connectivity in our order; `arrays` loses what means nothing without the numbers of the edges."""
     if "cells_on_vertex" not in arrays:
         raise MeshError(
@@ -159,7 +159,7 @@ def _topology(arrays: dict[str, NDArray], points: Array, changes: Changes) -> To
     return topology
 
 
-def _density(arrays: dict[str, NDArray], n_cells: int, changes: Changes) -> Array:
+def _density(arrays: dict[str, NDArray], n_cells: int, changes: FileChanges) -> Array:
     """The density at the generators; one everywhere where the file tells none."""
     density = arrays.get("mesh_density")
     if density is None:
@@ -202,7 +202,7 @@ def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None
 
 
 def _with_metrics_of_file(
-    rebuilt: VoronoiMesh, exact: Metrics, metrics: dict[str, NDArray], changes: Changes
+    rebuilt: VoronoiMesh, exact: Metrics, metrics: dict[str, NDArray], changes: FileChanges
 ) -> VoronoiMesh:
     """`rebuilt` with the metrics of the file, but for those that no step depends on where they are wrong."""
     changes.missing.extend(BY_NAME[name].file_name for name in METRICS_NAMES if name not in metrics)

@@ -14,7 +14,7 @@ MINIMUM_CELLS, MAXIMUM_CELLS = 12, (2**31 - 1) // 6
 STARTS = ("icosahedral", "fibonacci", "random", "random-root")
 DEFAULT_SEED = 0
 
-MARGIN = 1.05
+DENSITY_MARGIN = 1.05
 SMALLEST_ACCEPTANCE = 1e-3
 
 
@@ -86,7 +86,7 @@ def random_points(count: int, density: Density, generator: np.random.Generator) 
     Raises `MeshError` where the density is negative, not finite, or zero nearly everywhere.
     """
     density = within_range(density)
-    bound = MARGIN * largest_value(density)
+    bound = DENSITY_MARGIN * largest_value(density)
     drawn: list[Array] = []
     missing, accepted = count, 0.5
     while missing > 0:

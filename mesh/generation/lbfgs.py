@@ -72,12 +72,12 @@ def new_pair(
 
 
 @numba.njit(cache=True)
-def _move(points: Array, weight: float, direction: Array, length: float, cell: int, trial: Array) -> None:
-    """Write points + length * weight * direction, back on the sphere, to `trial`; points without a step stay exact."""
+def _move(points: Array, scale: float, direction: Array, length: float, cell: int, trial: Array) -> None:
+    """Write points + length * scale * direction, back on the sphere, to `trial`; points without a step stay exact."""
     dx, dy, dz = direction[3 * cell], direction[3 * cell + 1], direction[3 * cell + 2]
-    x = points[cell, 0] + length * weight * dx
-    y = points[cell, 1] + length * weight * dy
-    z = points[cell, 2] + length * weight * dz
+    x = points[cell, 0] + length * scale * dx
+    y = points[cell, 1] + length * scale * dy
+    z = points[cell, 2] + length * scale * dz
     still = dx == 0.0 and dy == 0.0 and dz == 0.0
     factor = 1.0 if still else 1.0 / np.sqrt(x * x + y * y + z * z)
     trial[cell, 0], trial[cell, 1], trial[cell, 2] = x * factor, y * factor, z * factor
@@ -93,7 +93,7 @@ def combine_and_move(
     step_factors: Array,
     change_factors: Array,
     points: Array,
-    weights: Array,
+    scales: Array,
     length: float,
     slot: int,
     trial: Array,
@@ -124,16 +124,16 @@ def combine_and_move(
             for axis in range(3):
                 direction[3 * cell + axis] -= radial * points[cell, axis]
                 square += direction[3 * cell + axis] ** 2
-            largest = max(largest, square * weights[cell] ** 2)
-            _move(points, weights[cell], direction, length, cell, trial)
+            largest = max(largest, square * scales[cell] ** 2)
+            _move(points, scales[cell], direction, length, cell, trial)
         partials[block, 0] = largest
 
 
 @numba.njit(parallel=True, cache=True)
-def move_all(points: Array, weights: Array, direction: Array, length: float, trial: Array) -> None:
+def move_all(points: Array, scales: Array, direction: Array, length: float, trial: Array) -> None:
     """Move points (n, 3) by `length` times the direction to `trial`."""
     for cell in numba.prange(len(points)):
-        _move(points, weights[cell], direction, length, cell, trial)
+        _move(points, scales[cell], direction, length, cell, trial)
 
 
 class PairMemory:

@@ -21,7 +21,7 @@ from mesh.triangulation.ordering import hilbert_order, inverse_order
 
 Single = NDArray[np.float32]
 
-BLOCK = 1024
+ROW_BLOCK = 1024
 """Rows that one thread takes in one go."""
 
 SERIAL_LIMIT = 4096
@@ -93,15 +93,19 @@ def _prolong_rows(
 @numba.njit(parallel=True, cache=True)
 def _restrict_parallel(fine: Array, starts: Index, sources: Index, values: Single, coarse: Array) -> None:
     """All rows of coarse = transposed interpolation of fine, by blocks."""
-    for block in numba.prange((len(coarse) + BLOCK - 1) // BLOCK):
-        _restrict_rows(fine, starts, sources, values, coarse, block * BLOCK, min((block + 1) * BLOCK, len(coarse)))
+    for block in numba.prange((len(coarse) + ROW_BLOCK - 1) // ROW_BLOCK):
+        _restrict_rows(
+            fine, starts, sources, values, coarse, block * ROW_BLOCK, min((block + 1) * ROW_BLOCK, len(coarse))
+        )
 
 
 @numba.njit(parallel=True, cache=True)
 def _prolong_parallel(coarse: Array, targets: Index, weights: Single, fine: Array, scale: float, result: Array) -> None:
     """All rows of result = scale * fine + interpolation of coarse, by blocks."""
-    for block in numba.prange((len(fine) + BLOCK - 1) // BLOCK):
-        _prolong_rows(coarse, targets, weights, fine, scale, result, block * BLOCK, min((block + 1) * BLOCK, len(fine)))
+    for block in numba.prange((len(fine) + ROW_BLOCK - 1) // ROW_BLOCK):
+        _prolong_rows(
+            coarse, targets, weights, fine, scale, result, block * ROW_BLOCK, min((block + 1) * ROW_BLOCK, len(fine))
+        )
 
 
 @numba.njit(cache=True)

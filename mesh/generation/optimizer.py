@@ -146,7 +146,7 @@ class _State:
         self.points = points.copy()
         self.gradient = np.empty_like(points)
         self.preconditioned = np.empty_like(points) if preconditioned else self.gradient
-        self.weights = np.ones(len(points))
+        self.scales = np.ones(len(points))
         self.energy = np.inf
         self.slope = 0.0
         self.residual = np.inf
@@ -262,7 +262,7 @@ class Optimizer:
             step_factors,
             change_factors,
             state.points,
-            state.weights,
+            state.scales,
             1.0,
             slot,
             self._trial.points,
@@ -278,7 +278,7 @@ class Optimizer:
     def _move(self, slot: int, length: float) -> None:
         """Trial points at another length along the direction in `slot`."""
         state = self._current
-        move_all(state.points, state.weights, self._memory.steps[slot], length, self._trial.points)
+        move_all(state.points, state.scales, self._memory.steps[slot], length, self._trial.points)
 
     def _evaluate_trial(self, direction: Array) -> None:
         """Triangulation, energy and gradient at the trial points, and the slope along `direction` there."""
@@ -290,9 +290,9 @@ class Optimizer:
             triangulation.ring_starts,
             triangulation.rings,
             direction.reshape(-1, 3),
-            self._current.weights,
+            self._current.scales,
             state.gradient,
-            state.weights,
+            state.scales,
             self._cell_partials,
         )
         state.energy = float(self._cell_partials[:, 0].sum())

@@ -30,7 +30,7 @@ from mesh.triangulation.moving import Triangulation
 
 
 @dataclass(frozen=True)
-class Weights:
+class Blend:
     """Number of samples an iteration, and alpha_2 and beta_2, the weights of their means (see the module)."""
 
     samples: int = 100_000
@@ -45,7 +45,7 @@ class Weights:
             )
 
 
-MACQUEEN = Weights(samples=1, alpha=0.0, beta=1.0)
+MACQUEEN = Blend(samples=1, alpha=0.0, beta=1.0)
 """MacQueen's method: each generator is the mean of all samples that it ever got."""
 
 PATIENCE = 10
@@ -55,7 +55,7 @@ PATIENCE = 10
 def probabilistic_lloyd(
     points: Array,
     density: Density,
-    weights: Weights,
+    blend: Blend,
     seed: int,
     limits: Limits,
     callback: Callback | None = None,
@@ -66,7 +66,7 @@ def probabilistic_lloyd(
     the history and the limits.
     """
     generator = np.random.default_rng(seed)
-    mover = _Mover(points, density, weights, generator)
+    mover = _Mover(points, density, blend, generator)
     triangulation, cells = Triangulation(points), WeightedCells(density, len(points))
     history, begin = History(), time.perf_counter()
     last_change = 0
@@ -83,7 +83,7 @@ def probabilistic_lloyd(
         reason = limits.reason_to_stop(history)
         if reason is not None:
             return ScvtResult(mover.points, triangulation.triangles, history, reason)
-        if weights.alpha > 0.0 and _stands_still(history.residual[last_change:]):
+        if blend.alpha > 0.0 and _stands_still(history.residual[last_change:]):
             mover.halve_steps()
             last_change = len(history.residual)
         mover.sweep()
@@ -97,10 +97,10 @@ def _stands_still(residuals: list[float]) -> bool:
 class _Mover:
     """Generators with the number of their updates."""
 
-    def __init__(self, points: Array, density: Density, weights: Weights, generator: np.random.Generator) -> None:
+    def __init__(self, points: Array, density: Density, blend: Blend, generator: np.random.Generator) -> None:
         self.points = points.copy()
         self._updates = np.ones(len(points))
-        self._density, self._weights, self._generator = density, weights, generator
+        self._density, self._blend, self._generator = density, blend, generator
         self._damping = 1.0
 
     def halve_steps(self) -> None:
@@ -109,10 +109,10 @@ class _Mover:
 
     def sweep(self) -> None:
         """As many iterations as take at least as many samples as there are generators."""
-        iterations = -(-len(self.points) // self._weights.samples)
-        drawn = random_points(iterations * self._weights.samples, self._density, self._generator)
-        if self._weights.samples == 1:
-            _follow(self.points, drawn, self._updates, self._weights.alpha, self._weights.beta, self._damping)
+        iterations = -(-len(self.points) // self._blend.samples)
+        drawn = random_points(iterations * self._blend.samples, self._density, self._generator)
+        if self._blend.samples == 1:
+            _follow(self.points, drawn, self._updates, self._blend.alpha, self._blend.beta, self._damping)
             return
         for samples in np.split(drawn, iterations):
             self._update(samples, cKDTree(self.points).query(samples)[1])
@@ -123,7 +123,7 @@ class _Mover:
         moved = counts > 0
         means = totals[moved] / counts[moved, None]
         updates = self._updates[moved, None]
-        share = self._damping * (self._weights.alpha * updates + self._weights.beta) / (updates + 1.0)
+        share = self._damping * (self._blend.alpha * updates + self._blend.beta) / (updates + 1.0)
         self.points[moved] = normalize((1.0 - share) * self.points[moved] + share * means)
         self._updates[moved] += 1.0
 

@@ -18,10 +18,10 @@ from mesh.generation.generators import (
     starting_points,
 )
 from mesh.generation.optimizer import Callback, Limits, Optimizer, ScvtResult
-from mesh.generation.probabilistic import MACQUEEN, Weights, probabilistic_lloyd
+from mesh.generation.probabilistic import MACQUEEN, Blend, probabilistic_lloyd
 from mesh.triangulation.ordering import hilbert_order, renumber
 
-SAMPLING_METHODS = {"probabilistic": Weights(), "macqueen": MACQUEEN}
+SAMPLING_METHODS = {"probabilistic": Blend(), "macqueen": MACQUEEN}
 METHODS = ("lbfgs", "lloyd", "multilevel", *SAMPLING_METHODS)
 COARSEST_LEVEL = 3
 """Bisection level of the coarsest mesh that the multilevel method converges."""

@@ -32,7 +32,7 @@ from mesh.triangulation.triangle_quality import near_bad_triangles, qualities, q
 GOAL = 0.86
 """Least quality that is asked for; from 0.8285 on no angle is right or obtuse."""
 
-MARGIN = 0.004
+GOAL_MARGIN = 0.004
 """The penalty begins so much above the goal when cells relax, for it is soft."""
 
 ANCHOR = 0.003
@@ -79,15 +79,15 @@ def well_center(
     """
     work = _Work(points, triangles, density, fixed, time.perf_counter() + seconds)
     before = residual = work.residual()
-    free = work.near(goal + MARGIN, RELAX_RINGS)
+    free = work.near(goal + GOAL_MARGIN, RELAX_RINGS)
     work.settle(goal)
-    free |= work.near(goal + MARGIN, RELAX_RINGS)
+    free |= work.near(goal + GOAL_MARGIN, RELAX_RINGS)
     if free.any():
         residual = work.residual()
         for _ in range(RELAX_ROUNDS):
             if work.is_late():
                 break
-            work.relax(free, goal + MARGIN)
+            work.relax(free, goal + GOAL_MARGIN)
             previous, residual = residual, work.residual()
             if residual > WORTHWHILE * previous:
                 break

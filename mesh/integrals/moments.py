@@ -34,9 +34,9 @@ SMALL = 1.0e-3
 """Squared distances (radians^2) below which series replace closed forms."""
 
 OUTER_NODE = 0.5 * (1.0 - np.sqrt(0.6))
-_nodes, _weights = np.polynomial.legendre.leggauss(8)
-NODES = 0.5 * (1.0 + _nodes)
-WEIGHTS = 0.5 * _weights
+_gauss_nodes, _gauss_weights = np.polynomial.legendre.leggauss(8)
+GAUSS_NODES = 0.5 * (1.0 + _gauss_nodes)
+GAUSS_WEIGHTS = 0.5 * _gauss_weights
 
 OPTIONS: dict[str, Any] = {"cache": True, "error_model": "numpy", "fastmath": {"contract"}}
 contracted = numba.njit(**OPTIONS)
@@ -87,11 +87,11 @@ def _large_side(drop: float, next_drop: float, square: float) -> float:
     """Integral of the energy along any side, eight nodes."""
     total = 0.0
     for node in range(8):
-        t = NODES[node]
+        t = GAUSS_NODES[node]
         part = t * (1.0 - t) * square
         sag = part / (1.0 + np.sqrt(1.0 - part))
         here = drop + t * (next_drop - drop)
-        total += WEIGHTS[node] * (here - sag) / ((2.0 - here - sag) * (1.0 - sag) ** 2)
+        total += GAUSS_WEIGHTS[node] * (here - sag) / ((2.0 - here - sag) * (1.0 - sag) ** 2)
     return total
 
 
@@ -150,14 +150,14 @@ def evaluate(
     ring_starts: Index,
     rings: Index,
     direction: Array,
-    old_weights: Array,
+    old_scales: Array,
     gradient: Array,
-    weights: Array,
+    scales: Array,
     partials: Array,
 ) -> None:
     """Scaled gradient of every cell, and block sums for the line search.
 
-    gradient (n, 3) gets w_i g_i and weights (n,) gets w_i = 1/sqrt(2 x_i.M_i),
+    gradient (n, 3) gets w_i g_i and scales (n,) gets w_i = 1/sqrt(2 x_i.M_i),
     so that -w_i * gradient_i is the Lloyd step, exactly after retraction.
     partials (number of blocks, 3): energy; sum of g . p where the unscaled
     direction is p_i = old_weights_i * direction_i; largest (|M_t| / x.M)^2.
@@ -171,15 +171,15 @@ def evaluate(
             mx -= radial * x
             my -= radial * y
             mz -= radial * z
-            weight = 1.0 / np.sqrt(2.0 * radial)
-            factor = -2.0 * weight
+            scale = 1.0 / np.sqrt(2.0 * radial)
+            factor = -2.0 * scale
             gradient[cell, 0] = factor * mx
             gradient[cell, 1] = factor * my
             gradient[cell, 2] = factor * mz
-            weights[cell] = weight
+            scales[cell] = scale
             energy_sum += energy
             slope += (
-                -2.0 * old_weights[cell] * (mx * direction[cell, 0] + my * direction[cell, 1] + mz * direction[cell, 2])
+                -2.0 * old_scales[cell] * (mx * direction[cell, 0] + my * direction[cell, 1] + mz * direction[cell, 2])
             )
             largest = max(largest, (mx * mx + my * my + mz * mz) / (radial * radial))
         partials[block, 0] = energy_sum

@@ -122,9 +122,9 @@ def _gradient_and_partials(
     sums: Array,
     fixed: NDArray[np.bool_],
     direction: Array,
-    old_weights: Array,
+    old_scales: Array,
     gradient: Array,
-    weights: Array,
+    scales: Array,
     partials: Array,
 ) -> None:
     """As `moments.evaluate`, from the sums (n, 6); `fixed` cells have no gradient and no part in the residual."""
@@ -132,7 +132,7 @@ def _gradient_and_partials(
         energy, slope, largest = 0.0, 0.0, 0.0
         for cell in range(block * BLOCK, min((block + 1) * BLOCK, len(sums))):
             radial = sums[cell, 4]
-            weights[cell] = 1.0 / np.sqrt(2.0 * radial)
+            scales[cell] = 1.0 / np.sqrt(2.0 * radial)
             energy += sums[cell, 5]
             if fixed[cell]:
                 gradient[cell, 0], gradient[cell, 1], gradient[cell, 2] = 0.0, 0.0, 0.0
@@ -140,8 +140,8 @@ def _gradient_and_partials(
             square = 0.0
             for axis in range(3):
                 component = sums[cell, 1 + axis]
-                gradient[cell, axis] = -2.0 * weights[cell] * component
-                slope -= 2.0 * old_weights[cell] * component * direction[cell, axis]
+                gradient[cell, axis] = -2.0 * scales[cell] * component
+                slope -= 2.0 * old_scales[cell] * component * direction[cell, axis]
                 square += component * component
             largest = max(largest, square / (radial * radial))
         partials[block, 0], partials[block, 1], partials[block, 2] = energy, slope, largest
@@ -188,14 +188,14 @@ class WeightedCells:
         ring_starts: Index,
         rings: Index,
         direction: Array,
-        old_weights: Array,
+        old_scales: Array,
         gradient: Array,
-        weights: Array,
+        scales: Array,
         partials: Array,
     ) -> None:
         """What `moments.evaluate` does, under the density and with the fixed generators left out."""
         self.integrate(points, circumcenters, ring_starts, rings)
-        _gradient_and_partials(self._sums, self._fixed, direction, old_weights, gradient, weights, partials)
+        _gradient_and_partials(self._sums, self._fixed, direction, old_scales, gradient, scales, partials)
 
 
 def centroid_distances(sums: Array) -> Array:

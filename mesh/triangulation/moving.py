@@ -7,7 +7,7 @@ from mesh.geometry.sphere import normalize
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.half_edges import build_twins, fill_rings, first_corners
 from mesh.triangulation.ordering import sort_triangles
-from mesh.triangulation.repair import BLOCK, count_covers, flip_marked, survey, untangle
+from mesh.triangulation.repair import TRIANGLE_BLOCK, count_covers, flip_marked, survey, untangle
 
 UNTANGLING_ROUNDS = 4
 """How often inverted triangles are set right by flips before other means are tried."""
@@ -30,7 +30,7 @@ class Triangulation:
         Raises `MeshError` where points coincide or do not surround the sphere.
         """
         n_triangles = 2 * len(points) - 4
-        n_blocks = (n_triangles + BLOCK - 1) // BLOCK
+        n_blocks = (n_triangles + TRIANGLE_BLOCK - 1) // TRIANGLE_BLOCK
         self.circumcenters = np.empty((n_triangles, 3))
         self.rings = np.empty(3 * n_triangles, np.int32)
         self.ring_starts = np.empty(len(points) + 1, np.int32)

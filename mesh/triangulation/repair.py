@@ -25,7 +25,7 @@ COVERING_HEIGHT = 1e-10
 ARITHMETIC_TOLERANCE = 16 * 2.2e-16
 """Rounding error of a determinant, relative to the product of its vectors' lengths."""
 
-BLOCK = 2048
+TRIANGLE_BLOCK = 2048
 """Triangles that one thread looks at in one go."""
 
 SIDES, INVERTED = 7, 8
@@ -92,7 +92,7 @@ def survey(
     for block in numba.prange(len(violations)):
         found = 0
         inverted = 0
-        for triangle in range(block * BLOCK, min((block + 1) * BLOCK, number_of_triangles)):
+        for triangle in range(block * TRIANGLE_BLOCK, min((block + 1) * TRIANGLE_BLOCK, number_of_triangles)):
             mark = 0
             if not _place_circumcenter(points, triangles, triangle, circumcenters):
                 inverted += 1
@@ -226,7 +226,7 @@ def _marked(marks: Index, counts: Index, bits: int) -> Index:
     for block in range(len(counts)):
         if counts[block] == 0:
             continue
-        for triangle in range(block * BLOCK, min((block + 1) * BLOCK, len(marks))):
+        for triangle in range(block * TRIANGLE_BLOCK, min((block + 1) * TRIANGLE_BLOCK, len(marks))):
             if marks[triangle] & bits:
                 found[number] = triangle
                 number += 1

@@ -41,7 +41,7 @@ class MapField:
     difference_scale: Scale
 
 
-FIELDS = {
+MAP_FIELDS = {
     "thickness": MapField("Thickness", 1.0, "thickness (m)", "range", "difference in thickness (m)", "symmetric"),
     "velocity": MapField(
         "Velocity", 1.0, "speed (m s⁻¹)", "from zero", "length of the difference in velocity (m s⁻¹)", "from zero"
@@ -71,7 +71,7 @@ def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
     differences = [_differences(solution, reference, longitude, latitude, day) for solution in compared]
     names = [solution.name for solution in (reference, *compared)]
     paths = []
-    for name, field in FIELDS.items():
+    for name, field in MAP_FIELDS.items():
         heading = f"{field.title}: {comparison.case}, day {day:g}"
         panels = [each[name] / field.unit for each in values]
         figure = map_figure(panels, names, heading, field.label, field.scale)

@@ -20,8 +20,8 @@ from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, m
 PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)
 """Ju, Ringler and Gunzburger (2011): mu, sigma_avg, sigma_min, q_avg, q_min of the mesh of equation (12)."""
 
-MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
-LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
+QUALITY_MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
+QUALITY_LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
 PAGE_DOTS_PER_INCH = 80
 CIRCLE_CELLS = 2562
 OPTIMIZER_CELLS = 2562
@@ -31,7 +31,7 @@ SHAKEN_SEEDS = range(3)
 SHAKE = 0.2
 """Size of random displacements of a converged icosahedral mesh, in mean spacings."""
 
-STARTS = [("icosahedral", 0), ("fibonacci", 0)] + [
+CIRCLE_STARTS = [("icosahedral", 0), ("fibonacci", 0)] + [
     (start, seed) for start in ("random", "random-root") for seed in range(3)
 ]
 OPTIMIZER_LIMITS = {
@@ -78,9 +78,9 @@ def measured(start: str, request: Request, result: ScvtResult) -> Start:
 
 
 def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
-    """Refined-circle meshes from all `STARTS`."""
+    """Refined-circle meshes from all `CIRCLE_STARTS`."""
     meshes = []
-    for start, seed in STARTS:
+    for start, seed in CIRCLE_STARTS:
         request = Request(CIRCLE_CELLS, start, density=NAMED["refined-circle"], seed=seed)
         meshes.append(converge_from(request, tolerance))
         tell(f"refined-circle from {start} {seed}: {meshes[-1].history.iterations} iterations")
@@ -150,7 +150,9 @@ def distribution_figure(meshes: list[Start], published: tuple[float, ...], title
     """Each measure over the starts as points, with the published value as a line."""
     figure = Figure(figsize=(11.0, 3.6), layout="constrained")
     kinds = sorted({mesh.start for mesh in meshes})
-    for axes, name, label, value in zip(figure.subplots(1, 5), MEASURES, LABELS, published, strict=True):
+    for axes, name, label, value in zip(
+        figure.subplots(1, 5), QUALITY_MEASURES, QUALITY_LABELS, published, strict=True
+    ):
         for position, kind in enumerate(kinds):
             values = [getattr(mesh.quality, name) for mesh in meshes if mesh.start == kind]
             axes.plot([position] * len(values), values, "o", alpha=0.7)
@@ -200,9 +202,9 @@ def table1_lines(rows: list[Row]) -> list[str]:
     """Table 1 in Markdown: for each level ours above the published values."""
     lines = [
         "| level | cells | | bisection: "
-        + ", ".join(LABELS)
+        + ", ".join(QUALITY_LABELS)
         + " | SCVT: "
-        + ", ".join(LABELS)
+        + ", ".join(QUALITY_LABELS)
         + " | residual | iterations | s |",
         "|---|---|---|---|---|---|---|---|",
     ]
@@ -223,11 +225,13 @@ def table1_lines(rows: list[Row]) -> list[str]:
 def starts_lines(meshes: list[Start]) -> list[str]:
     """Meshes over starts in Markdown."""
     lines = [
-        "| start | seed | " + " | ".join(LABELS) + " | obtuse | residual | iterations | energy | dislocations |",
-        "|---|---|" + "---|" * (len(LABELS) + 5),
+        "| start | seed | "
+        + " | ".join(QUALITY_LABELS)
+        + " | obtuse | residual | iterations | energy | dislocations |",
+        "|---|---|" + "---|" * (len(QUALITY_LABELS) + 5),
     ]
     for mesh in meshes:
-        values = " | ".join(f"{getattr(mesh.quality, name):.4f}" for name in MEASURES)
+        values = " | ".join(f"{getattr(mesh.quality, name):.4f}" for name in QUALITY_MEASURES)
         lines.append(
             f"| {mesh.start} | {mesh.seed} | {values} | {mesh.quality.obtuse} | {mesh.quality.residual:.1e} | "
             f"{mesh.history.iterations} | {mesh.history.energy[-1]:.6e} | {mesh.dislocations} |"

@@ -23,7 +23,7 @@ LEAST_TRUNCATION = 16
 MEASURES = ("thickness", "velocity", "vorticity")
 """What the uncertainty is given of."""
 
-Tell = Callable[[str, float], None]
+TellPart = Callable[[str, float], None]
 """Hears what is done and the part of it that is done."""
 
 
@@ -82,7 +82,7 @@ class Reference:
 
 
 def make_reference(
-    case: Case, days: Sequence[float], truncation: int, damping_hours: float, history: str, tell: Tell
+    case: Case, days: Sequence[float], truncation: int, damping_hours: float, history: str, tell: TellPart
 ) -> Reference:
     """Run the spectral model at `truncation`, its half and its quarter, and keep what the half resolves.
 
@@ -118,7 +118,7 @@ def make_reference(
     return Reference(case, tuple(days), kept, truncations, differences, settings, history)
 
 
-def _solve(model: SpectralModel, days: Sequence[float], tell: Tell) -> Coefficients:
+def _solve(model: SpectralModel, days: Sequence[float], tell: TellPart) -> Coefficients:
     """States of the spectral model (n_days, 3, n_coefficients) on `days`, which ascend."""
     state = model.initial_state()
     time_step = model.stable_step(state)

@@ -26,7 +26,7 @@ class StoredField:
     measure: str
 
 
-FIELDS = {
+STORED_FIELDS = {
     "vorticity": StoredField("s-1", "vorticity"),
     "divergence": StoredField("s-1", "vorticity"),
     "surface_height": StoredField("m", "thickness"),
@@ -69,7 +69,7 @@ def write_reference(reference: Reference, path: AnyPath) -> None:
             "1",
             f"relative l2 norms of {', '.join(MEASURES)} of runs of lower truncation against this one",
         )
-        for row, name in enumerate(FIELDS):
+        for row, name in enumerate(STORED_FIELDS):
             _write_field(file, name, reference.coefficients[:, row], _resolution(reference, row))
         file.setncatts(
             {
@@ -91,9 +91,9 @@ def _resolution(reference: Reference, row: int) -> float:
 
     Where that is tiny, the step is the least at which the largest coefficient still is a 32-bit integer.
     """
-    measure = list(FIELDS.values())[row].measure
+    measure = list(STORED_FIELDS.values())[row].measure
     harmonics = Harmonics(truncation_of(reference.coefficients), reference.case.radius)
-    yardstick = list(FIELDS).index("surface_height" if measure == "thickness" else "vorticity")
+    yardstick = list(STORED_FIELDS).index("surface_height" if measure == "thickness" else "vorticity")
     magnitude = min(harmonics.root_mean_square(state[[yardstick]]) for state in reference.coefficients)
     uncertainty = magnitude * reference.differences[-1, :, MEASURES.index(measure)].min()
     # Parts of coefficients have errors of variance step^2 / 12, orders above 0 count twice in the mean square.
@@ -106,7 +106,7 @@ def _write_field(file: netCDF4.Dataset, name: str, coefficients: Coefficients, s
     variable = file.createVariable(
         name, "i4", ("day", "part", "coefficient"), compression="zlib", complevel=9, shuffle=True
     )
-    variable.setncatts({"units": FIELDS[name].units, "scale_factor": step, "long_name": f"harmonics of {name}"})
+    variable.setncatts({"units": STORED_FIELDS[name].units, "scale_factor": step, "long_name": f"harmonics of {name}"})
     parts = np.stack([coefficients.real, coefficients.imag], axis=1)
     variable.set_auto_scale(False)
     variable[:] = np.round(parts / step).astype(np.int32)
@@ -137,7 +137,7 @@ def read_reference(path: AnyPath) -> Reference:
 
 
 def _reference_of(file: netCDF4.Dataset) -> Reference:
-    parts = np.stack([np.asarray(file[name][:], dtype=np.float64) for name in FIELDS], axis=1)
+    parts = np.stack([np.asarray(file[name][:], dtype=np.float64) for name in STORED_FIELDS], axis=1)
     return Reference(
         case=find_case(file.case, json.loads(file.parameters)),
         days=tuple(np.asarray(file["day"][:], dtype=np.float64).tolist()),

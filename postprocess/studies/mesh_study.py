@@ -22,7 +22,7 @@ from postprocess.compare.truncation import truncation_errors
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
 from postprocess.studies.families import FAMILIES
-from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, Row, Task, Tell, require_days, write_table
+from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, StudyRow, Task, Tell, require_days, write_table
 from swe.errors import InputError
 
 LEAST_CELLS, LARGEST_CELLS = 162, 655362
@@ -77,11 +77,11 @@ class Member:
         return mean_spacing(self.mesh.n_cells) * self.mesh.sphere_radius / 1e3
 
 
-def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[Row]]:
+def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[StudyRow]]:
     """Make what is missing of a study, coarse meshes first, and write its table; return finest members and all rows."""
     prepared_folder(plan.folder)
     finest: list[Member] = []
-    rows: list[Row] = []
+    rows: list[StudyRow] = []
     for cells in sorted(set(plan.cells)):
         finest = []  # those of coarser meshes are let go, they would fill the memory
         for family in dict.fromkeys(plan.families):
@@ -129,9 +129,9 @@ def _history(path: Path) -> str:
         return ""
 
 
-def row_of(member: Member, error_day: float) -> Row:
+def row_of(member: Member, error_day: float) -> StudyRow:
     """The line of a member: the mesh, its quality, truncation errors, solution errors and conservation."""
-    row: Row = {
+    row: StudyRow = {
         "family": member.family,
         "requested_cells": member.requested_cells,
         "spacing_km": member.spacing,
@@ -156,15 +156,15 @@ def thickness_error(member: Member, day: float) -> Array:
     return ours.thickness - theirs.thickness
 
 
-def _errors(member: Member, comparison: Comparison, day: float) -> Row:
-    row: Row = {"reference": comparison.solution.name, "error_day": day}
+def _errors(member: Member, comparison: Comparison, day: float) -> StudyRow:
+    row: StudyRow = {"reference": comparison.solution.name, "error_day": day}
     for field, norms in comparison.entries[0].norms.items():
         row |= {f"{field}_{name}": value for name, value in asdict(norms).items()}
     row |= {f"uncertainty_{field}": value for field, value in comparison.solution.uncertainty(day).items()}
     return row | _worst_cell(member, day)
 
 
-def _worst_cell(member: Member, day: float) -> Row:
+def _worst_cell(member: Member, day: float) -> StudyRow:
     """Where the error of thickness is largest, degrees, and how many mean distances away the mesh is irregular."""
     mesh = member.mesh
     worst = int(np.argmax(np.abs(thickness_error(member, day))))

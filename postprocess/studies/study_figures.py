@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from postprocess.figures.plots import ROUND_OFF_FLOOR
 from postprocess.studies.mesh_study import Member
-from postprocess.studies.study_folder import CONSERVATION, Row
+from postprocess.studies.study_folder import CONSERVATION, StudyRow
 from swe.constants import SECONDS_PER_DAY
 
 ERRORS = {
@@ -43,7 +43,7 @@ SHORT_AXIS = 30.0
 """Logarithmic axes over a smaller ratio than this have labels at 1, 2 and 5 times powers of ten."""
 
 
-def error_figure(rows: Sequence[Row], heading: str) -> Figure:
+def error_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """Solution errors against the distance of cells, one line a family, with slopes of first and second order."""
     names = [name for name in ERRORS if any(name in row for row in rows)]
     figure, grid = _panels(len(names), 2)
@@ -57,7 +57,7 @@ def error_figure(rows: Sequence[Row], heading: str) -> Figure:
     return figure
 
 
-def truncation_figure(rows: Sequence[Row], heading: str) -> Figure:
+def truncation_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """Truncation errors of the operators against the distance of cells: l2 above, l∞ below."""
     figure, grid = _panels(2 * len(OPERATORS), len(OPERATORS))
     for axes, (norm, operator) in zip(grid, [(n, o) for n in ("l2", "linf") for o in OPERATORS], strict=True):
@@ -67,7 +67,7 @@ def truncation_figure(rows: Sequence[Row], heading: str) -> Figure:
     return figure
 
 
-def quality_figure(rows: Sequence[Row], heading: str) -> Figure:
+def quality_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """The l2 error of thickness against measures of the mesh; one colour a family, the larger the finer the mesh."""
     figure, grid = _panels(len(QUALITIES), 3)
     families, sizes = _families(rows), sorted({row["requested_cells"] for row in rows})
@@ -123,11 +123,11 @@ def _panels(count: int, columns: int) -> tuple[Figure, list[Axes]]:
     return figure, list(np.atleast_1d(figure.subplots(rows, columns)).ravel())
 
 
-def _families(rows: Sequence[Row]) -> list[str]:
+def _families(rows: Sequence[StudyRow]) -> list[str]:
     return list(dict.fromkeys(str(row["family"]) for row in rows))
 
 
-def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
+def _draw_families(axes: Axes, rows: Sequence[StudyRow], name: str) -> None:
     """One line a family on logarithmic axes, and the slopes of first and second order."""
     for number, family in enumerate(_families(rows)):
         ours = [row for row in rows if row["family"] == family and row.get(name, 0.0)]
@@ -147,7 +147,7 @@ def _draw_families(axes: Axes, rows: Sequence[Row], name: str) -> None:
     axes.grid(alpha=0.3, which="both")
 
 
-def _slope_guides(axes: Axes, rows: Sequence[Row], name: str) -> None:
+def _slope_guides(axes: Axes, rows: Sequence[StudyRow], name: str) -> None:
     points = [(row["spacing_km"], row[name]) for row in rows if row.get(name, 0.0)]
     if len({x for x, _ in points}) < 2:
         return

@@ -32,7 +32,7 @@ CONSERVATION = (
 Tell = Callable[[str], None]
 """Hears a line on what has been done."""
 
-Row = dict[str, Any]
+StudyRow = dict[str, Any]
 """One line of a table by column: numbers and words."""
 
 
@@ -117,7 +117,7 @@ class Task:
             return False
 
 
-def write_table(rows: Sequence[Row], path: Path) -> None:
+def write_table(rows: Sequence[StudyRow], path: Path) -> None:
     """Write rows as CSV; a column is empty where a row lacks it."""
     columns = list(dict.fromkeys(name for row in rows for name in row))
     with written_aside(path) as aside, aside.open("w", newline="") as file:

@@ -21,7 +21,7 @@ from postprocess.studies.study_figures import (
     quality_figure,
     truncation_figure,
 )
-from postprocess.studies.study_folder import CONSERVATION, Row, fitted_order
+from postprocess.studies.study_folder import CONSERVATION, StudyRow, fitted_order
 from postprocess.studies.study_maps import closeup_figure, map_figure, place_in_words
 from postprocess.studies.time_study import DRAWN, TimePlan, orders, time_figure
 
@@ -83,7 +83,7 @@ TIME_COLUMNS = {
 }
 
 
-def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Row], arguments: Sequence[str]) -> Path:
+def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[StudyRow], arguments: Sequence[str]) -> Path:
     """Draw all figures of a study of meshes and write its report; return the path of the report."""
     heading = f"{plan.case.title}, day {plan.error_day:g}"
     compared = [row for row in rows if "thickness_l2" in row]
@@ -114,7 +114,7 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Row],
     return _write_page(plan.folder, f"Study of meshes: {plan.case.title}", text, arguments, sections, figures)
 
 
-def write_time_report(plan: TimePlan, rows: Sequence[Row], arguments: Sequence[str]) -> Path:
+def write_time_report(plan: TimePlan, rows: Sequence[StudyRow], arguments: Sequence[str]) -> Path:
     """Draw the figure of a study of time steps and write its report; return the path of the report."""
     heading = f"{plan.case.title}, {plan.mesh.n_cells} cells, day {plan.days:g}"
     fitted = orders(rows)
@@ -127,9 +127,9 @@ def write_time_report(plan: TimePlan, rows: Sequence[Row], arguments: Sequence[s
     return _write_page(plan.folder, f"Study of time steps: {plan.case.title}", text, arguments, sections, figures)
 
 
-def _order_rows(rows: Sequence[Row]) -> list[Row]:
+def _order_rows(rows: Sequence[StudyRow]) -> list[StudyRow]:
     """Fitted order of each error by family, where a family has two sizes or more."""
-    fitted: list[Row] = []
+    fitted: list[StudyRow] = []
     for family in dict.fromkeys(row["family"] for row in rows):
         ours = [row for row in rows if row["family"] == family]
         spacing = [float(row["spacing_km"]) for row in ours]
@@ -139,7 +139,7 @@ def _order_rows(rows: Sequence[Row]) -> list[Row]:
     return fitted
 
 
-def _stalling(rows: Sequence[Row]) -> list[str]:
+def _stalling(rows: Sequence[StudyRow]) -> list[str]:
     """A sentence for each family whose largest error of thickness no longer falls with its l2 norm."""
     sentences = []
     for family in dict.fromkeys(row["family"] for row in rows):
@@ -157,7 +157,7 @@ def _stalling(rows: Sequence[Row]) -> list[str]:
     return sentences
 
 
-def _table(rows: Sequence[Row], columns: Columns) -> str:
+def _table(rows: Sequence[StudyRow], columns: Columns) -> str:
     """An HTML table of those columns that any row has."""
     shown = {name: title for name, title in columns.items() if any(row.get(name, "") != "" for row in rows)}
     head = "".join(f"<th>{html.escape(title)}</th>" for title in shown.values())

@@ -16,7 +16,7 @@ from postprocess.runs.reading import Run
 from postprocess.studies.study_folder import (
     CONSERVATION,
     TABLE_FILE,
-    Row,
+    StudyRow,
     Task,
     Tell,
     fitted_order,
@@ -60,10 +60,10 @@ class TimePlan:
             raise InputError("a study of time steps needs at least two of them; give --dt more than once")
 
 
-def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[Row]:
+def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[StudyRow]:
     """Make the runs that are missing, the shortest step first, and write the table; return its rows."""
     prepared_folder(plan.folder)
-    rows: list[Row] = []
+    rows: list[StudyRow] = []
     finest: Run | None = None
     for time_step in sorted(set(plan.time_steps)):
         directory = plan.folder / "runs" / f"dt-{time_step!r}"
@@ -77,9 +77,9 @@ def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[Row]:
     return rows
 
 
-def _measured(run: Run, finest: Run, day: float) -> Row:
+def _measured(run: Run, finest: Run, day: float) -> StudyRow:
     """Conservation at the end, and the difference from the run of the shortest step, which is none for itself."""
-    row: Row = {"steps": run.steps, "courant_number": float(run.series["courant_number"].max())}
+    row: StudyRow = {"steps": run.steps, "courant_number": float(run.series["courant_number"].max())}
     row |= {name: float(run.series[name][-1]) for name in CONSERVATION}
     if run is finest:
         return row
@@ -89,7 +89,7 @@ def _measured(run: Run, finest: Run, day: float) -> Row:
     return row
 
 
-def orders(rows: Sequence[Row]) -> dict[str, float]:
+def orders(rows: Sequence[StudyRow]) -> dict[str, float]:
     """Fitted order of every drawn quantity in the time step."""
     fitted = {}
     for name in DRAWN:
@@ -98,7 +98,7 @@ def orders(rows: Sequence[Row]) -> dict[str, float]:
     return fitted
 
 
-def time_figure(rows: Sequence[Row], heading: str) -> Figure:
+def time_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """Energy drift and time stepping error against the time step, with the slopes of fourth and fifth order."""
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
     axes = figure.subplots()

@@ -16,7 +16,7 @@ from tests.trisk.conftest import Call
 @pytest.fixture
 def compare(trisk: Call, monkeypatch: pytest.MonkeyPatch) -> Call:
     """Run `trisk compare`, drawing small maps of thickness alone."""
-    monkeypatch.setattr(compare_maps, "FIELDS", {"thickness": compare_maps.FIELDS["thickness"]})
+    monkeypatch.setattr(compare_maps, "MAP_FIELDS", {"thickness": compare_maps.MAP_FIELDS["thickness"]})
     monkeypatch.setattr(compare_maps, "ROWS", 20)
     monkeypatch.setattr(compare_maps, "COLUMNS", 40)
     return partial(trisk, "compare")

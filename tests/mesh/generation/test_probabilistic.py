@@ -5,7 +5,7 @@ from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.density.named import NAMED, uniform
 from mesh.generation.optimizer import Limits
 from mesh.generation.pipeline import default_tolerance
-from mesh.generation.probabilistic import MACQUEEN, Weights, probabilistic_lloyd
+from mesh.generation.probabilistic import MACQUEEN, Blend, probabilistic_lloyd
 from mesh.generation.scvt import Request, generate_scvt, starting_mesh
 
 
@@ -14,7 +14,7 @@ def start(count: int) -> np.ndarray:
 
 
 def test_residual_and_energy_fall() -> None:
-    result = probabilistic_lloyd(start(300), uniform, Weights(20_000), 1, Limits(1e-3, 40))
+    result = probabilistic_lloyd(start(300), uniform, Blend(20_000), 1, Limits(1e-3, 40))
     assert result.reason == "iterations"
     assert result.history.iterations == 40
     assert result.history.residual[-1] < 0.15 * result.history.residual[0]
@@ -22,7 +22,7 @@ def test_residual_and_energy_fall() -> None:
 
 
 def test_same_seed_gives_the_same_points() -> None:
-    runs = [probabilistic_lloyd(start(100), uniform, Weights(500), seed, Limits(1e-3, 3)) for seed in (5, 5, 6)]
+    runs = [probabilistic_lloyd(start(100), uniform, Blend(500), seed, Limits(1e-3, 3)) for seed in (5, 5, 6)]
     np.testing.assert_array_equal(runs[0].points, runs[1].points)
     assert not np.array_equal(runs[0].points, runs[2].points)
 
@@ -44,7 +44,7 @@ def test_macqueen_makes_generators_the_means_of_their_samples() -> None:
 
 def test_steps_shrink_until_the_tolerance_is_reached() -> None:
     """Steps of one size leave a residual of 0.05 to 0.08, the error of so few samples."""
-    result = probabilistic_lloyd(start(100), uniform, Weights(2000), 0, Limits(0.02, 5000))
+    result = probabilistic_lloyd(start(100), uniform, Blend(2000), 0, Limits(0.02, 5000))
     assert result.reason == "tolerance"
     assert min(result.history.residual[:40]) > 0.04
 
@@ -59,7 +59,7 @@ def test_default_tolerance_is_reached(method: str, density: str) -> None:
 
 def test_density_attracts_generators() -> None:
     density = NAMED["refined-circle"]
-    result = probabilistic_lloyd(start(300), density, Weights(5000), 0, Limits(1e-3, 30))
+    result = probabilistic_lloyd(start(300), density, Blend(5000), 0, Limits(1e-3, 30))
     assert np.mean(density(result.points) > 80.0) > 1.5 * np.mean(density(start(300)) > 80.0)
 
 
@@ -67,4 +67,4 @@ def test_unreached_tolerance_and_wrong_weights_are_refused() -> None:
     with pytest.raises(MeshError, match="allow more iterations"):
         generate_scvt(Request(100, method="probabilistic"), Limits(1e-6, 2))
     with pytest.raises(MeshError, match="at least one sample and weights between 0 and 1"):
-        Weights(alpha=1.5)
+        Blend(alpha=1.5)

@@ -13,7 +13,7 @@ from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.studies.mesh_study import Plan
-from postprocess.studies.study_folder import TABLE_FILE, Row, Task, fitted_order
+from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
 from postprocess.studies.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
@@ -30,7 +30,7 @@ def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:
 
 
 @pytest.fixture(scope="module")
-def study(plan: Plan) -> tuple[list[mesh_study.Member], list[Row]]:
+def study(plan: Plan) -> tuple[list[mesh_study.Member], list[StudyRow]]:
     return mesh_study.carry_out(plan, False, silent)
 
 
