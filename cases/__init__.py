@@ -1,4 +1,4 @@
-"""Test cases: parameters, initial and, where known, exact state; one paper a module."""
+"""Test cases: parameters, initial state and, where it is known, exact solution; one module per paper."""
 
 from cases.base import Case, parameter
 from cases.galewsky import Galewsky

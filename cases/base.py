@@ -20,10 +20,10 @@ from swe.errors import InputError
 from swe.state import State
 
 SMALLEST, LARGEST = 1e-6, 1e12
-"""Radii, m, and gravities, m/s2, that arithmetic bears."""
+"""Bounds on radius, m, and gravity, m/s2, within which the arithmetic neither overflows nor underflows."""
 
 RADIUS_TOLERANCE = 1e-9
-"""Relative difference by which the radius of a mesh may miss that of a case: files round."""
+"""Largest relative difference between the radii of mesh and case; files round the radius."""
 
 LARGEST_ANGLE = 4.0 * math.pi
 """Two turns, radians: beyond, a number is likely to be in degrees."""
@@ -43,9 +43,9 @@ def parameter(default: Default, units: str, meaning: str) -> Default:
 class Case(ABC):
     """A shallow-water test case on a rotating sphere; longitudes and latitudes in radians.
 
-    A case must say `thickness` and `streamfunction`, a `title` and its `recommended_days`; the rest has defaults.
-    The functions give one value for each position, or one number for all. Where `has_exact_solution`, those that
-    take a time hold at any time, else at time zero only.
+    A case must define `thickness`, `streamfunction`, `title` and `recommended_days`; everything else has a default.
+    Its functions return one value per position, or a single number. Those that take a time are valid at any time
+    where `has_exact_solution` is true, and otherwise only at time zero.
     """
 
     name: ClassVar[str]
@@ -61,7 +61,7 @@ class Case(ABC):
     """The paper, starting with authors and year."""
 
     convergence_order: ClassVar[float | None] = None
-    """Least order, in the distance of cells, accepted of the l2 error norm of thickness on the recommended day.
+    """Lowest accepted order of convergence, in cell spacing, of the l2 error norm of thickness on the recommended day.
 
     It holds between successive converged uniform meshes of 10242, 40962, ... cells; None where there is no exact
     solution or no order to expect.
@@ -113,7 +113,7 @@ class Case(ABC):
                 raise InputError(f"{name} is {value:g}; it must be positive")
 
     def require_angles(self, *names: str) -> None:
-        """Raise `InputError` where one of these parameters is no angle that one would give in radians."""
+        """Raise `InputError` if one of these parameters is too large to be an angle in radians."""
         for name in names:
             value = self.parameters()[name]
             if abs(value) > LARGEST_ANGLE:
@@ -126,7 +126,7 @@ class Case(ABC):
 
     @property
     def background_depth(self) -> float:
-        """Constant part of the thickness, m, that is no signal: error norms are taken of what is above it."""
+        """Constant part of the thickness, m; error norms are those of the thickness above it."""
         return 0.0
 
     @abstractmethod
@@ -158,8 +158,8 @@ class Case(ABC):
         """State at `time` seconds on `mesh`: thickness at the cells, normal velocity from the streamfunction.
 
         Thickness is that of the centres, or the mean over each cell where `sampling` is "mean". The streamfunction
-        is taken at vertices, so that the velocity has no discrete divergence. Raises `InputError` where the mesh has
-        another radius than the case.
+        is evaluated at vertices, so that the velocity has no discrete divergence. Raises `InputError` if the radii of
+        mesh and case differ.
         """
         if not math.isclose(mesh.sphere_radius, self.radius, rel_tol=RADIUS_TOLERANCE):
             raise InputError(
@@ -189,7 +189,7 @@ class Case(ABC):
         return asdict(self)
 
     def evaluated(self, function: Callable[..., Array], *time: float) -> SphereFunction:
-        """`function` of this case as one of longitude and latitude; raises `InputError` where it fails."""
+        """`function` of this case as a function of longitude and latitude; raises `InputError` if it fails."""
 
         def field(longitude: Array, latitude: Array) -> Array:
             return self._spread(function, self._outcome(function, longitude, latitude, *time), longitude)
@@ -212,7 +212,7 @@ class Case(ABC):
         return field
 
     def _outcome(self, function: Callable[..., Any], *arguments: Any) -> Any:
-        """What `function` of this case gives."""
+        """The value that `function` of this case returns."""
         try:
             return function(*arguments)
         except InputError:
@@ -222,7 +222,7 @@ class Case(ABC):
             raise InputError(f"{function.__name__} of {self.name} failed{place}: {error!r}") from error
 
     def _spread(self, function: Callable[..., Any], outcome: object, longitude: Array) -> Array:
-        """`outcome` of `function`, one number or one for each position, as an array of one for each."""
+        """`outcome` of `function`, a single number or one per position, as an array with one value per position."""
         try:
             values = np.asarray(outcome, dtype=np.float64)
         except (TypeError, ValueError) as error:
@@ -236,6 +236,6 @@ class Case(ABC):
 
 
 def _place_of_call(error: BaseException) -> str:
-    """Where the function that was called from here came to `error`, as a part of a sentence."""
+    """The line at which the function called here raised `error`, as part of a sentence."""
     called = traceback.extract_tb(error.__traceback__)[1:2]
     return "".join(f" in line {frame.lineno} of {frame.filename}" for frame in called)

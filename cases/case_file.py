@@ -1,4 +1,4 @@
-"""Cases of users: a class, or an object, in a Python file of their own."""
+"""Cases written by users: a class, or an object, in a Python file."""
 
 import copy
 import importlib.util
@@ -15,7 +15,7 @@ from cases.base import Case
 from swe.errors import InputError
 
 MARK = ".py:"
-"""What tells FILE.py:CLASS from the name of a case."""
+"""Distinguishes FILE.py:CLASS from the name of a case."""
 
 
 def is_address(name: str) -> bool:
@@ -24,9 +24,9 @@ def is_address(name: str) -> bool:
 
 
 def load_case(address: str) -> Case:
-    """Make the case that `address`, FILE.py:CLASS, names; its name becomes the address with the whole path.
+    """Return the case at `address`, FILE.py:CLASS; its name is the address with the absolute path.
 
-    CLASS is a subclass of `Case`, or an object with all that a case has. Raises `InputError` where there is none.
+    CLASS is a subclass of `Case`, or an object with all its members. Raises `InputError` if there is no such case.
     """
     file, _, attribute = address.rpartition(":")
     if not address.rpartition(MARK)[1]:
@@ -39,9 +39,9 @@ def load_case(address: str) -> Case:
 
 
 def named(case: Case, name: str) -> Case:
-    """`case` under another name: a copy that has it for itself, so that the class and what the user made keep theirs.
+    """A copy of `case` with its own `name`; the class and the original keep theirs.
 
-    Raises `InputError` where it cannot have it.
+    Raises `InputError` if the object does not accept a name.
     """
     try:
         copied = copy.copy(case)
@@ -54,7 +54,7 @@ def named(case: Case, name: str) -> Case:
 
 
 def _imported(path: Path) -> ModuleType:
-    """The module in the file at `path`, executed anew."""
+    """The module in the file at `path`, freshly executed."""
     if not path.is_file():
         raise InputError(f"{path}: no such file; write FILE.py:CLASS with the path of a Python file")
     name = f"case file {path}"
@@ -72,7 +72,7 @@ def _imported(path: Path) -> ModuleType:
 
 
 def line_in(path: str | Path, error: BaseException) -> str:
-    """The line of the file at `path` that came to `error`, as a part of a sentence; empty where none did."""
+    """The line of the file at `path` that raised `error`, as part of a sentence; empty if none did."""
     if isinstance(error, SyntaxError):
         return f", line {error.lineno}" if error.lineno else ""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == str(path)]
@@ -109,7 +109,7 @@ def _made(kind: type, address: str, path: Path) -> object:
 
 
 def _require_members(case: object, address: str, path: Path) -> None:
-    """Raise `InputError` where something that every case has, besides its name, is missing or no use."""
+    """Raise `InputError` if a member that every case has, other than the name, is missing or has an invalid value."""
     members = {*Case.__annotations__, *vars(Case)} - {"name"}
     try:
         missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))

@@ -1,6 +1,6 @@
 """Derivatives on the sphere of a function known at any point, by differences along great circles.
 
-They serve cases that give a streamfunction and no velocity or vorticity of their own. Central differences of order six
+They serve cases that define a streamfunction but neither velocity nor vorticity. Sixth-order central differences
 with `STEP` are accurate to about 1e-11 for a field with the scale of the sphere; their error grows with the sixth power
 of the wave number. There is no singularity at the poles.
 """
@@ -22,14 +22,14 @@ SECOND = (3 / 2, -3 / 20, 1 / 90)
 
 
 def gradient(function: SphereFunction, longitude: Array, latitude: Array) -> tuple[Array, Array]:
-    """Eastward and northward component of the gradient on the unit sphere, in units of `function` per radian."""
+    """Eastward and northward components of the gradient on the unit sphere, in units of `function` per radian."""
     point = from_lonlat(longitude, latitude)
     east, north = east_north(longitude, latitude)
     return _first_derivative(function, point, east), _first_derivative(function, point, north)
 
 
 def laplacian(function: SphereFunction, longitude: Array, latitude: Array) -> Array:
-    """Laplacian on the unit sphere: the sum of second derivatives along two great circles at a right angle."""
+    """Laplacian on the unit sphere: the sum of second derivatives along two great circles at right angles."""
     point = from_lonlat(longitude, latitude)
     east, north = east_north(longitude, latitude)
     return _second_derivative(function, point, east) + _second_derivative(function, point, north)
@@ -50,6 +50,6 @@ def _second_derivative(function: SphereFunction, point: Array, tangent: Array) -
 
 
 def _ahead(function: SphereFunction, point: Array, tangent: Array, steps: int) -> Array:
-    """Value of `function` so many steps from `point` (..., 3) along the great circle in direction `tangent`."""
+    """Value of `function`, `steps` away from `point` (..., 3) along the great circle in direction `tangent`."""
     angle = steps * STEP
     return function(*to_lonlat(np.cos(angle) * point + np.sin(angle) * tangent))

@@ -62,7 +62,7 @@ class Galewsky(Case):
 
     @property
     def has_exact_solution(self) -> bool:
-        """Only without the bump."""
+        """Yes, but only without the bump."""
         return not self.perturbed
 
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
@@ -100,7 +100,7 @@ class Galewsky(Case):
         return wind * (self.radius * coriolis + wind * np.tan(latitude))
 
     def _bump(self, longitude: Array, latitude: Array) -> Array:
-        """Height, m, that is added: equation (4), with longitude in (-pi, pi)."""
+        """Height of the bump, m: equation (4), with longitude in (-pi, pi)."""
         east = about_zero(longitude)
         exponent = -((east / self.bump_width) ** 2) - ((self.bump_latitude - latitude) / self.bump_length) ** 2
         return self.bump_height * np.cos(latitude) * np.exp(exponent)
@@ -115,7 +115,7 @@ class Galewsky(Case):
 
     @cached_property
     def _depth_at_the_south_pole(self) -> float:
-        """h_0 of equation (3), m: that of the given mean.
+        """h_0 of equation (3), m, which gives the mean depth.
 
         The mean over the sphere of the integral G of `_slope` is, by parts, that of (1 - sin(phi)) G' / 2.
         """

@@ -1,6 +1,6 @@
-"""A lake at rest: what Bermudez and Vazquez (1994), Computers & Fluids 23, 1049-1071, ask of a scheme with topography.
+"""A lake at rest, after Bermudez and Vazquez (1994), Computers & Fluids 23, 1049-1071.
 
-They call it the C-property: where the surface is level and nothing moves, nothing may start to move.
+Their C-property: over any topography, fluid at rest with a level surface must stay at rest.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from mesh.arrays import Array
 class LakeAtRest(ConicalMountain):
     """Fluid at rest with a level surface over the mountain of Williamson's test case 5; it stays so.
 
-    What moves is round-off, so that there is no order of convergence.
+    Any motion is round-off, so that there is no order of convergence.
     """
 
     name: ClassVar[str] = "lake-at-rest"

@@ -1,4 +1,4 @@
-"""Parameters of a case: what they mean, and how they are set from text or from the record of a run."""
+"""Parameters of a case: their units and meaning, and how they are set from text or from the record of a run."""
 
 import ast
 import math
@@ -15,7 +15,7 @@ Value = float | bool | str
 """Of a parameter: a number or a truth value, or the text of one."""
 
 LONGEST_SHOWN = 80
-"""Characters of a wrong value that an error tells."""
+"""Number of characters of a wrong value that an error message quotes."""
 
 KINDS = {float: "a number", int: "a whole number", bool: "true or false"}
 
@@ -28,7 +28,7 @@ ARITHMETIC: dict[type[ast.operator], Callable[[float, float], float]] = {
 
 
 def split_settings(settings: Iterable[str]) -> dict[str, str]:
-    """Names and texts of settings NAME=VALUE; the last of a name counts."""
+    """Names and values, as text, of settings NAME=VALUE; the last setting of a name counts."""
     pairs = {}
     for setting in settings:
         name, equals, text = setting.partition("=")
@@ -39,7 +39,7 @@ def split_settings(settings: Iterable[str]) -> dict[str, str]:
 
 
 def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
-    """`case` with other values of some parameters; raise `InputError` where it has no such or they are no values."""
+    """`case` with some parameters changed; raises `InputError` for unknown parameters and invalid values."""
     present = case.parameters()
     # The record of a run has lists where a case has tuples.
     parameters = {
@@ -73,7 +73,7 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
 
 
 def _converted(case: Case, name: str, value: Value, kind: object) -> Value:
-    """`value` as the type that the parameter is annotated with; as it is where there is no annotation."""
+    """`value` converted to the annotated type of the parameter; unchanged if there is no annotation."""
     if kind is None:
         return value
     if kind not in KINDS:
@@ -99,7 +99,7 @@ def _truth(value: Value) -> bool:
 
 
 def _number(text: str) -> float:
-    """A number, or what + - * / make of numbers and pi."""
+    """A number, or an expression in numbers and pi with + - * /."""
     try:
         return float(text)
     except ValueError:

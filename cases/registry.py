@@ -1,4 +1,4 @@
-"""The cases by name, and those in files of users by address; `docs/cases.md` has an example."""
+"""The cases by name, and cases in users' files by address; `docs/cases.md` has an example."""
 
 from collections.abc import Mapping
 
@@ -18,8 +18,8 @@ CASES: dict[str, type[Case]] = {
 def find_case(name: str, parameters: Mapping[str, Value] | None = None) -> Case:
     """Return the case called `name`, or that at an address FILE.py:CLASS, with `parameters` where they are given.
 
-    What is not given is as in the paper. Values may be text, as typed; those that the record of a run holds under
-    "case" and "parameters" make its case again. Raises `InputError` where there is no such case or parameter.
+    Other parameters are as in the paper. Values may be text, as typed on a command line; "case" and "parameters" in the
+    record of a run give back its case. Raises `InputError` for an unknown case or parameter.
     """
     return with_parameters(_default_case(name), parameters or {})
 

@@ -45,7 +45,7 @@ class SolidRotation(Case):
         self.require_angles("angle")
 
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
-        """The wind is k x grad of it: equation (92)."""
+        """Equation (92)."""
         return -self.radius * self.wind_speed * self._sine_of_turned_latitude(longitude, latitude)
 
     def velocity(self, longitude: Array, latitude: Array, time: float = 0.0) -> tuple[Array, Array]:
@@ -92,11 +92,11 @@ class Williamson1(SolidRotation):
 
     @property
     def has_exact_solution(self) -> bool:
-        """Yes: the bell goes with the wind."""
+        """Yes: the bell is carried by the wind."""
         return True
 
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
-        """A cosine of the distance from the centre of the bell, which has turned with the wind."""
+        """A cosine of the distance from the centre of the bell, which the wind has carried along."""
         start = from_lonlat(np.array(self.bell_longitude), np.array(self.bell_latitude))
         center = _turned(start, self.axis, self.wind_speed / self.radius * time)
         distance = np.minimum(arc_length(from_lonlat(longitude, latitude), center), self.bell_radius)
@@ -113,7 +113,7 @@ def _turned(point: Array, axis: Array, angle: float) -> Array:
 class Williamson2(SolidRotation):
     """Global steady-state nonlinear zonal geostrophic flow (test case 2), which is its own exact solution.
 
-    Solid-body rotation with a Coriolis parameter turned alike, so that the pressure gradient balances it: equations
+    Solid-body rotation with a Coriolis parameter about the same axis, balanced by the pressure gradient: equations
     (90) to (96) of the paper.
     """
 

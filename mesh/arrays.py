@@ -1,4 +1,4 @@
-"""Array types, and the one sum that scatters: values gathered to the entities that an index names."""
+"""Array types, and the one scatter-add: sums of values by the index of an entity."""
 
 import numpy as np
 from numpy.typing import NDArray

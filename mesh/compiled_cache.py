@@ -1,4 +1,4 @@
-"""Compiled functions kept on disk, and made anew where the source of anything that they may use has changed.
+"""Compiled functions cached on disk, and recompiled when the source of anything they may use has changed.
 
 Numba looks only at the file of a function, and so would run old code after a change of a constant or of a function
 that the file imports. Here the stamp of a function covers its module and all modules of ours that it imports, directly
@@ -69,7 +69,7 @@ class SourcesLocator(caching._CacheLocator):
 
 
 def is_ours(file: Path) -> bool:
-    """Whether a source file is one of our packages, of this installation."""
+    """Whether a source file belongs to our packages in this installation."""
     return file.is_relative_to(ROOT) and file.relative_to(ROOT).parts[0] in PACKAGES
 
 
@@ -89,7 +89,7 @@ def sources_stamp(file: Path) -> str:
 
 @functools.cache
 def imported_files(file: Path) -> frozenset[Path]:
-    """Source files of our packages that the statements of import in `file` name."""
+    """Source files of our packages that `file` imports."""
     names: set[str] = set()
     for module, parts, modules in IMPORT.findall(_source(file).decode(errors="replace")):
         names.update(re.split(r"[,\s]+", modules))

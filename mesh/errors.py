@@ -1,4 +1,4 @@
-"""The exception that everything in this package raises for bad input, and the sentence that names entities."""
+"""The exceptions that this package raises for bad input, and the check whose message names the offending entities."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,11 @@ class HemisphereError(MeshError):
 
 
 class MeshWarning(UserWarning):
-    """A mesh is usable, but less exact than our own, or parts of it were rebuilt; the message says how much."""
+    """A mesh is usable but less accurate than ours, or parts of it were rebuilt; the message says how much."""
 
 
 def require(valid: NDArray[np.bool_], place: str, problem: str) -> None:
-    """Raise `MeshError` unless all rows of `valid` hold; the sentence starts with the rows that do not."""
+    """Raise `MeshError` unless all rows of `valid` are true; the message starts with the rows that are not."""
     rows = valid if valid.ndim == 1 else valid.all(axis=tuple(range(1, valid.ndim)))
     if rows.all():
         return

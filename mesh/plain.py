@@ -1,4 +1,4 @@
-"""Numbers and paths of any type that means one, as those of Python: options are converted once, at the door."""
+"""Numbers and paths of any type converted to plain Python ones: options are converted once, where they enter."""
 
 import json
 import math

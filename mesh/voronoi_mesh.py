@@ -47,17 +47,17 @@ class Topology:
 
     @property
     def n_vertices(self) -> int:
-        """Number of vertices, which is that of Delaunay triangles."""
+        """Number of vertices, equal to that of Delaunay triangles."""
         return len(self.cells_on_vertex)
 
     @property
     def max_edges(self) -> int:
-        """Width of the ring arrays: the largest number of edges of a cell, or more in files of others."""
+        """Width of the ring arrays: the largest number of edges of a cell, or more in files from other programs."""
         return self.edges_on_cell.shape[1]
 
     @property
     def on_ring(self) -> NDArray[np.bool_]:
-        """Which entries (n_cells, max_edges) of the ring arrays of cells are edges and not fill."""
+        """Mask (n_cells, max_edges) of the entries of the cells' ring arrays that are not fill."""
         return np.arange(self.max_edges) < self.n_edges_on_cell[:, None]
 
     @cached_property
@@ -80,7 +80,7 @@ class Topology:
 
 @dataclass(frozen=True, eq=False)
 class Metrics:
-    """Where the entities are and how large: lengths in units of the sphere's radius as stored, angles in radians.
+    """Positions and sizes of the entities: lengths in units of the sphere's radius as stored, angles in radians.
 
     `kite_areas_on_vertex[v, j]` is the part of cell `cells_on_vertex[v, j]` in triangle v. The tangential velocity
     at edge e is the sum of `weights_on_edge[e, j]` times the normal velocity at `edges_on_edge[e, j]`.

@@ -1,1 +1,1 @@
-"""Densities of generators: named ones, fields on grids and scattered points, and what a file says of its own."""
+"""Densities of generators: named ones, fields on grids and scattered points, and the records of them in mesh files."""

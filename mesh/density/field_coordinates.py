@@ -1,4 +1,4 @@
-"""Latitude and longitude of a field in a NetCDF file, whatever they are called and in whatever unit they are.
+"""Latitude and longitude of a field in a NetCDF file, under any common name and in any common unit.
 
 They are found by the attributes of the CF conventions (`coordinates`, `standard_name`, `units`, `axis`) and, where a
 file has none, by the names in common use. What has to be assumed is said in a `MeshWarning`.
@@ -77,7 +77,7 @@ def read_coordinates(file: netCDF4.Dataset, field: netCDF4.Variable, path: str |
 
 
 def _coordinate(variable: netCDF4.Variable, values: Array) -> Coordinate:
-    """A coordinate without the dimensions of length one, such as time, that it has beyond two."""
+    """A coordinate without extra dimensions of length one, such as time."""
     if values.ndim <= 2:
         return Coordinate(values, variable.name, variable.dimensions)
     kept = tuple(name for name, size in zip(variable.dimensions, values.shape, strict=True) if size > 1)
@@ -98,7 +98,7 @@ def read_numbers(variable: netCDF4.Variable, path: str | Path) -> Array:
 
 
 def _find(file: netCDF4.Dataset, field: netCDF4.Variable, kind: str) -> netCDF4.Variable | None:
-    """The variable along dimensions of the field that is most surely its latitude or longitude."""
+    """The variable along dimensions of the field that is most likely its latitude or longitude."""
     listed = str(getattr(field, "coordinates", "")).split()
     ranked = [
         (variable.name not in listed, rank, order, variable)
@@ -111,7 +111,7 @@ def _find(file: netCDF4.Dataset, field: netCDF4.Variable, kind: str) -> netCDF4.
 
 
 def _doubt(variable: netCDF4.Variable, kind: str) -> int | None:
-    """How unsure it is that a variable is a latitude or longitude: 0 for not at all; None if it is not."""
+    """How doubtful it is that a variable is a latitude or longitude: 0 is certain; None if it is neither."""
     standard_name = str(getattr(variable, "standard_name", "")).strip().lower()
     if standard_name:
         return 0 if standard_name in (kind, f"co{kind}") else None

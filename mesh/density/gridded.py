@@ -27,7 +27,7 @@ MOST_PASSES = 10_000
 
 @dataclass(frozen=True)
 class Shaping:
-    """What is done to a field before it serves as density.
+    """How a field is turned into a density.
 
     Values below `floor` are raised to it, then all are smoothed by `smoothing` passes of a mean with the neighbours
     and raised to `power` (-4 for a field of cell widths).
@@ -83,7 +83,7 @@ class FileDensity:
 
 @dataclass(frozen=True)
 class _Field:
-    """Values of a field and where they are.
+    """Values of a field and their positions.
 
     On a grid, values (rows, columns) at latitudes (rows,) and longitudes (columns,), radians; else values (n,) at unit
     vectors `points` (n, 3).
@@ -96,7 +96,7 @@ class _Field:
 
     @property
     def digest(self) -> str:
-        """SHA-256, in hexadecimal, of values and places."""
+        """SHA-256, in hexadecimal, of values and positions."""
         digest = hashlib.sha256()
         for array in (self.values, self.latitude, self.longitude, self.points):
             if array is not None:

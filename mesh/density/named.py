@@ -1,4 +1,4 @@
-"""Density functions: how closely generators lie where.
+"""Density functions: how closely generators are spaced.
 
 A density is any callable that takes unit vectors (m, 3) and returns m numbers, not negative and not all zero. In a
 centroidal Voronoi tessellation the widths of the cells go like density^(-1/4) (Gersho's conjecture; Ju, Ringler and

@@ -1,4 +1,4 @@
-"""What a mesh and its file say of how the mesh was generated: for which density, and which generators were held.
+"""How a mesh was generated, as recorded in its file: for which density, and with which generators held fixed.
 
 A named density is told by its name. One from a file is told by that file, what was done to its field, and a digest of
 the values, so that it is found again where the file is still there and the same. A function cannot be told.
@@ -49,7 +49,7 @@ def source_of(density: Density) -> str:
 
 
 def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
-    """The density that a mesh was generated for, None where it cannot be known, and a sentence on that.
+    """The density that a mesh was generated for, None if that is unknown, and a note that says why.
 
     A mesh of which nothing is told has the density at its centres, interpolated between them.
     """
@@ -88,7 +88,7 @@ def _from_source(source: str, name: str) -> tuple[Density | None, str]:
 
 
 def write_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
-    """Add to an open mesh file what is told of a density from a file, and of generators that were held."""
+    """Write to an open mesh file the source of a density from a file, and which generators were held fixed."""
     if mesh.density_source:
         file.density_source = mesh.density_source
     if mesh.fixed_cells is not None:

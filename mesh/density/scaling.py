@@ -1,4 +1,4 @@
-"""Densities of any scale, brought to where products of their values are neither lost nor infinite."""
+"""Densities of any scale, multiplied by a factor so that products of their values neither underflow nor overflow."""
 
 import math
 

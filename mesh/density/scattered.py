@@ -81,7 +81,7 @@ def tell_of_part(name: str) -> None:
 
 
 class _Buckets:
-    """For patches of the sphere, a triangle near by: the faces of a cube, each cut into squares.
+    """A nearby triangle for each patch of the sphere: the faces of a cube, each cut into squares.
 
     `triangle` (6 * resolution^2,) has about as many patches as there are points.
     """
@@ -127,7 +127,7 @@ def _determinant(points: Array, point: int, centers: Array, a: int, b: int) -> f
 def _determinants(
     points: Array, point: int, centers: Array, triangles: Index, triangle: int
 ) -> tuple[float, float, float]:
-    """Those of the sides opposite to the three corners of a triangle; none is negative inside."""
+    """Determinants of the sides opposite the three corners of a triangle; none is negative inside it."""
     a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
     return (
         _determinant(points, point, centers, b, c),

@@ -1,4 +1,4 @@
-"""How far the metrics of a mesh are from those that follow from its generators."""
+"""Differences between the metrics of a mesh and those that follow from its generators."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

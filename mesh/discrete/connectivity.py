@@ -1,6 +1,6 @@
-"""Whether all connectivity arrays of a mesh tell the same story, in the order that `Topology` promises.
+"""Checks that the connectivity arrays of a mesh agree with each other and have the order of `Topology`.
 
-Everything is checked exactly. Errors name the first entities that offend, counted from 0.
+Everything is checked exactly. Errors name the first offending entities, counted from 0.
 """
 
 import numpy as np
@@ -28,7 +28,7 @@ def validate_topology(mesh: Topology) -> None:
 
 
 def require_closed(n_cells: int, n_edges: int, n_vertices: int) -> None:
-    """Raise `MeshError` unless so many cells, edges and vertices close a sphere with triangles."""
+    """Raise `MeshError` unless these numbers of cells, edges and vertices close a sphere with triangles."""
     if n_vertices != 2 * n_cells - 4 or n_edges != 3 * n_cells - 6:
         raise MeshError(
             f"{n_cells} cells, {n_edges} edges and {n_vertices} vertices do not close a sphere: "

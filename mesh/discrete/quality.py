@@ -46,7 +46,7 @@ def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:
 
 
 def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple[Quality, str]:
-    """What `mesh_quality` gives, and what a reader must know of the residual; empty where there is nothing to add."""
+    """The result of `mesh_quality`, and a note on how to read the residual; empty if there is nothing to add."""
     density, note = density_of(mesh) if density is None else (density, "")
     notes = [note] if note else []
     if mesh.fixed_cells is not None:

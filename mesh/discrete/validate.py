@@ -1,7 +1,7 @@
-"""What every valid mesh satisfies: consistent connectivity, metrics that belong to it, and the discrete identities.
+"""Checks that a mesh is valid: consistent connectivity, metrics that belong to it, and the discrete identities.
 
-Connectivity is checked exactly; metrics and identities yield residuals, relative to the local size, that must
-stay below a tolerance. Errors name the first entities that offend, counted from 0.
+Connectivity is checked exactly; residuals of metrics and identities, relative to the local size, must stay below a
+tolerance. Errors name the first offending entities, counted from 0.
 """
 
 import numpy as np
@@ -127,7 +127,7 @@ def check_orientation(points: Array, topology: Topology) -> None:
 
 
 def _check_delaunay(mesh: VoronoiMesh) -> None:
-    """Edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
+    """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
     points, vertices = mesh.cell_points / mesh.sphere_radius, mesh.vertex_points / mesh.sphere_radius
     normal = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
     along = vertices[mesh.vertices_on_edge[:, 1]] - vertices[mesh.vertices_on_edge[:, 0]]

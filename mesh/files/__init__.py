@@ -1,1 +1,1 @@
-"""Mesh files by the conventions of MPAS: the only place that knows indices that start at 1."""
+"""Mesh files by the conventions of MPAS: the only place with indices that start at 1."""

@@ -24,7 +24,7 @@ EDGE_COUNTS = {"n_edges_on_cell": "cells", "n_edges_on_edge": "edges"}
 
 
 def topology_in_order(arrays: Arrays, points: Array) -> Topology | None:
-    """The topology that the arrays are as they stand, None where some are missing or in another order.
+    """The topology of the arrays as they are, None if some are missing or in another order.
 
     `points` (n_cells, 3) are the generators, unit vectors.
     """
@@ -65,7 +65,7 @@ def arranged_topology(arrays: Arrays, points: Array) -> Topology:
 
 
 def reordered(arrays: Arrays, topology: Topology) -> list[str]:
-    """Names, as in files, of the connectivity arrays that stand in another order than in `topology`."""
+    """Names, as in files, of the connectivity arrays whose order differs from that of `topology`."""
     return [
         BY_NAME[name].file_name
         for name in TOPOLOGY_NAMES
@@ -110,7 +110,7 @@ def _counter_clockwise(triangles: Index, points: Array) -> Index:
 
 
 def _require_cells(name: str, cells: Index, n_cells: int) -> None:
-    """All entries of an array are cells, and no row names one twice."""
+    """Check that all entries of an array are cells, and that no row names one twice."""
     variable = BY_NAME[name]
     place = variable.dimensions[0][2:]
     require(

@@ -1,4 +1,4 @@
-"""A mesh from what its file holds: sorted where the order is another, rebuilt where that does no harm."""
+"""A mesh from the content of its file: sorted into our order, and rebuilt where no information is lost."""
 
 from dataclasses import dataclass, field, replace
 
@@ -30,7 +30,7 @@ ON_EDGES = tuple(name for name, variable in BY_NAME.items() if "n_edges" in (var
 
 @dataclass
 class FileChanges:
-    """What was done to the content of a file, in words."""
+    """What was changed in the content of a file, in words."""
 
     said: list[str] = field(default_factory=list)
     sorted: list[str] = field(default_factory=list)
@@ -39,7 +39,7 @@ class FileChanges:
 
     @property
     def in_words(self) -> str:
-        """One line, empty where nothing was done."""
+        """One line, empty if nothing was changed."""
         parts = list(self.said)
         if self.sorted:
             parts.append(f"sorted {_listed(self.sorted)}")
@@ -112,7 +112,7 @@ def _unit_vectors(points: Array, distance: Array) -> Array:
 
 
 def _positive(attribute: object) -> float | None:
-    """The attribute as a positive number, None where it is none."""
+    """The attribute as a positive number, None if it is not one."""
     try:
         number = float(attribute)  # type: ignore[arg-type]
     except (TypeError, ValueError):
@@ -160,7 +160,7 @@ def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges) -
 
 
 def _density(arrays: dict[str, NDArray], n_cells: int, changes: FileChanges) -> Array:
-    """The density at the generators; one everywhere where the file tells none."""
+    """The density at the generators; one everywhere if the file has none."""
     density = arrays.get("mesh_density")
     if density is None:
         return np.ones(n_cells)
@@ -204,7 +204,7 @@ def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None
 def _with_metrics_of_file(
     rebuilt: VoronoiMesh, exact: Metrics, metrics: dict[str, NDArray], changes: FileChanges
 ) -> VoronoiMesh:
-    """`rebuilt` with the metrics of the file, but for those that no step depends on where they are wrong."""
+    """`rebuilt` with the metrics of the file, except for wrong ones that no time step depends on."""
     changes.missing.extend(BY_NAME[name].file_name for name in METRICS_NAMES if name not in metrics)
     mesh = replace(rebuilt, **metrics)  # type: ignore[arg-type]
     for difference in metric_differences(mesh, exact):

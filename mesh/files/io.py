@@ -1,4 +1,4 @@
-"""MPAS mesh files, read and written; the only place that knows indices that count from 1."""
+"""Reading and writing MPAS mesh files; the only place with indices that start at 1."""
 
 import hashlib
 import warnings
@@ -130,7 +130,7 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
 
 
 def _read(path: Path) -> tuple[FileContent, tuple[str, str, NDArray[np.bool_] | None]]:
-    """What a mesh file holds, and how the mesh was generated."""
+    """The content of a mesh file, and how the mesh was generated."""
     try:
         with dataset(path) as file:
             file.set_auto_mask(False)

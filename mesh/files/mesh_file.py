@@ -1,4 +1,4 @@
-"""What an MPAS mesh file holds, in memory's conventions: whatever is there, of any type, nothing judged yet."""
+"""The content of an MPAS mesh file in the conventions of memory: arrays of any type, not yet checked."""
 
 from dataclasses import dataclass
 
@@ -39,7 +39,7 @@ class FileContent:
 
 
 def read_content(file: netCDF4.Dataset) -> FileContent:
-    """Everything that the file has of a mesh.
+    """All parts of a mesh that the file holds.
 
     Indices count from 0, and what is no index is -1; angles are in radians. Raises `MeshError` where the mesh is on no
     sphere, or where a variable that the solver needs has other dimensions or no numbers.
@@ -80,7 +80,7 @@ def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
 
 
 def _problem(source: netCDF4.Variable, variable: MeshVariable) -> str:
-    """What keeps a variable from being read, in words; empty where nothing does."""
+    """Why a variable cannot be read, in words; empty if it can."""
     expected = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
     if source.dimensions != expected:
         return f"has dimensions {source.dimensions} instead of {expected}"
@@ -108,7 +108,7 @@ def _whole_numbers(values: NDArray, first: int) -> NDArray:
 
 
 def _fill_rings(arrays: dict[str, NDArray]) -> None:
-    """Replace what stands beyond the count of each ring, whatever it is."""
+    """Replace all entries beyond the count of each ring."""
     for count, rings in (
         ("n_edges_on_cell", ("cells_on_cell", "edges_on_cell", "vertices_on_cell")),
         ("n_edges_on_edge", ("edges_on_edge", "weights_on_edge")),

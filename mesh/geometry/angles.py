@@ -1,4 +1,4 @@
-"""Angles brought into one turn; nothing else wraps a longitude. All are in radians, in arrays of any shape."""
+"""The only place where angles are wrapped into one turn. All are in radians, in arrays of any shape."""
 
 import numpy as np
 

@@ -193,7 +193,7 @@ class WeightedCells:
         scales: Array,
         partials: Array,
     ) -> None:
-        """What `moments.evaluate` does, under the density and with the fixed generators left out."""
+        """As `moments.evaluate`, under the density and without the fixed generators."""
         self.integrate(points, circumcenters, ring_starts, rings)
         _gradient_and_partials(self._sums, self._fixed, direction, old_scales, gradient, scales, partials)
 

@@ -44,7 +44,7 @@ def _volume(points: Array, a: int, normal: Vector) -> float:
 
 @numba.njit(cache=True)
 def _place_circumcenter(points: Array, triangles: Index, triangle: int, circumcenters: Array) -> bool:
-    """Write the circumcenter of one triangle; False if inverted or flat."""
+    """Write the circumcentre of one triangle; False if it is inverted or flat."""
     a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
     normal = triangle_normal(points, a, b, c)
     factor = 1.0 / np.sqrt(dot_product(normal, normal))
@@ -80,7 +80,7 @@ def survey(
     violations: Index,
     inversions: Index,
 ) -> None:
-    """Circumcentres (m, 3) of all triangles and a look at every edge.
+    """Compute the circumcentres (m, 3) of all triangles and check every edge.
 
     marks (m,) uint8 gets bit k set where the side opposite to corner k breaks
     the Delaunay property (each edge is seen once, from the smaller half-edge),
@@ -220,7 +220,7 @@ def _settle_edge(
 
 @numba.njit(cache=True)
 def _marked(marks: Index, counts: Index, bits: int) -> Index:
-    """Triangles, in order, with one of the `bits` in their mark; `counts` tells of each block how many there may be."""
+    """Triangles, in order, whose mark has one of the `bits`; `counts` has the number of marks in each block."""
     found = np.empty(min(counts.sum(), len(marks)), np.int64)
     number = 0
     for block in range(len(counts)):

@@ -31,7 +31,7 @@ def qualities(points: Array, triangles: Index) -> Array:
 
 
 def near_bad_triangles(points: Array, triangles: Index, wanted: float, rings: int) -> NDArray[np.bool_]:
-    """Mask (n,) of the cells within so many rings of a triangle whose q is below `wanted`."""
+    """Mask (n,) of the cells within a number of `rings` of a triangle whose q is below `wanted`."""
     marked = np.zeros(len(points), bool)
     marked[triangles[qualities(points, triangles) < wanted]] = True
     for _ in range(rings):
