@@ -226,7 +226,7 @@ class Case(ABC):
         try:
             values = np.asarray(outcome, dtype=np.float64)
         except (TypeError, ValueError) as error:
-            raise InputError(f"{function.__name__} of {self.name} gives no numbers: {error!r}") from error
+            raise InputError(f"{function.__name__} of {self.name} does not return numbers: {error!r}") from error
         if values.shape not in ((), longitude.shape):
             raise InputError(
                 f"{function.__name__} of {self.name} gives an array of shape {values.shape} for positions of "

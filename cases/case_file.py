@@ -94,7 +94,7 @@ def _is_own_case(value: object, module: ModuleType) -> bool:
 def _made(kind: type, address: str, path: Path) -> object:
     """An object of the class, with default parameters."""
     if not issubclass(kind, Case):
-        raise InputError(f"{address} is no case; derive the class from cases.Case")
+        raise InputError(f"{address} is not a case; derive the class from cases.Case")
     if inspect.isabstract(kind):
         raise InputError(f"{address} lacks {' and '.join(sorted(kind.__abstractmethods__))}; write them")
     try:

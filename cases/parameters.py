@@ -61,7 +61,7 @@ def with_parameters(case: Case, parameters: Mapping[str, Value]) -> Case:
     if not changed:
         return case
     if not is_dataclass(case):
-        raise InputError(f"{case.name} is no dataclass, so that its parameters cannot be changed; change its file")
+        raise InputError(f"{case.name} is not a dataclass, so its parameters cannot be changed; change its file")
     try:
         return named(replace(case, **changed), case.name)
     except InputError:

@@ -46,7 +46,7 @@ class Coordinate(NamedTuple):
 def read_coordinates(file: netCDF4.Dataset, field: netCDF4.Variable, path: str | Path) -> tuple[Coordinate, Coordinate]:
     """The latitude, in [-pi/2, pi/2], and the longitude of a field, in one dimension or two.
 
-    Raises `MeshError` where they are not found, or are no latitudes and longitudes.
+    Raises `MeshError` where they are not found, or are not latitudes and longitudes.
     """
     found = [_find(file, field, kind) for kind in ("latitude", "longitude")]
     latitude, longitude = found
@@ -61,17 +61,17 @@ def read_coordinates(file: netCDF4.Dataset, field: netCDF4.Variable, path: str |
     colatitude = _is_colatitude(latitude)
     north, east = _in_radians((latitude, longitude), (north, east), path)
     if colatitude:
-        _tell(f"{path}: {latitude.name} is taken for co-latitude, which counts from the north pole")
+        _tell(f"{path}: {latitude.name} is taken to be co-latitude, counted from the north pole")
         north = QUARTER - north
     if not np.abs(north).max() <= QUARTER + ANGLE_ROUNDING:
         raise MeshError(
             f"{path}: {latitude.name} goes from {_degrees(north.min())} to {_degrees(north.max())} degrees, which "
-            "are no latitudes; mend its values or its units, or name it colatitude if it counts from the north pole"
+            "are not latitudes; correct its values or its units, or name it colatitude if it counts from the north pole"
         )
     if not np.abs(east).max() <= LARGEST_LONGITUDE:
         raise MeshError(
             f"{path}: {longitude.name} goes from {_degrees(east.min())} to {_degrees(east.max())} degrees, which "
-            "are no longitudes; mend its values or its units"
+            "are not longitudes; correct its values or its units"
         )
     return _coordinate(latitude, np.clip(north, -QUARTER, QUARTER)), _coordinate(longitude, east)
 
@@ -154,7 +154,9 @@ def _in_radians(
         small = np.abs(values[0]).max() <= np.pi + ANGLE_ROUNDING and np.abs(values[1]).max() <= TURN + ANGLE_ROUNDING
         assumed = known[0] if known else not small
         unit = "degrees" if assumed else "radians"
-        _tell(f"{path}: {' and '.join(without)} without units, taken for {unit}; set the attribute units to be sure")
+        _tell(
+            f"{path}: {' and '.join(without)} without units, taken to be in {unit}; set the attribute units to be sure"
+        )
         in_degrees = [assumed if degrees is None else degrees for degrees in in_degrees]
     return [np.radians(angle) if degrees else angle for angle, degrees in zip(values, in_degrees, strict=True)]
 

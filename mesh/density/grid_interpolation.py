@@ -36,7 +36,7 @@ def density_on_grid(
     # Both ends of a full circle are one meridian.
     longitude, columns = np.unique(eastward(np.round(eastward(longitude), 12)), return_index=True)
     if len(latitude) < 2:
-        raise MeshError(f"{name} has one latitude; a grid needs two at least")
+        raise MeshError(f"{name} has one latitude; a grid needs at least two")
     gaps = np.diff(longitude, append=longitude[0] + TURN)
     whole_circle = len(gaps) == 1 or gaps.max() <= WIDEST_GAP * np.delete(gaps, gaps.argmax()).max()
     beyond = max(QUARTER + latitude[0], QUARTER - latitude[-1])

@@ -159,7 +159,7 @@ def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -
     if len(axes) == 3 and all(axis.dimensions == ("nCells",) for axis in axes) and "nCells" in variable.dimensions:
         points = np.stack([read_numbers(axis, path) for axis in axes], axis=1)
         if not np.linalg.norm(points, axis=1).all():
-            raise MeshError(f"{path}: xCell, yCell and zCell are all zero at a cell; mend the coordinates")
+            raise MeshError(f"{path}: xCell, yCell and zCell are all zero at a cell; correct the coordinates")
         return _scattered(_values_along(variable, ("nCells",), path), normalize(points), path)
     latitude, longitude = read_coordinates(file, variable, path)
     north, east = latitude.values, longitude.values

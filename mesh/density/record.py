@@ -59,7 +59,7 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
     if mesh.density_source:
         return _from_source(mesh.density_source, name)
     if name:
-        what = f"the {name}" if name.startswith(FUNCTION) else f"'{name}', of which the mesh says no more than the name"
+        what = f"the {name}" if name.startswith(FUNCTION) else f"'{name}', of which the mesh holds only the name"
         return None, f"unknown, since the density was {what}"
     if np.ptp(mesh.mesh_density) == 0.0:
         return uniform, ""
@@ -84,7 +84,7 @@ def _from_source(source: str, name: str) -> tuple[Density | None, str]:
             continue
         if density.digest == digest:
             return density, ""
-    return None, f"unknown, since the density was {variable} of {name}, which is not there or has changed since"
+    return None, f"unknown, since the density was {variable} of {name}, which is missing or has changed since"
 
 
 def write_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:

@@ -28,7 +28,7 @@ def mesh_from_points(
     lengths = np.linalg.norm(points, axis=1)
     wrong = np.flatnonzero(~(np.isfinite(lengths) & (lengths > 0.0)))
     if len(wrong):
-        raise MeshError(f"generator {wrong[0]} is {points[wrong[0]].tolist()}, which is no point on a sphere")
+        raise MeshError(f"generator {wrong[0]} is {points[wrong[0]].tolist()}, which is not a point on the sphere")
     points = normalize(points)
     topology = build_topology(delaunay(points) if triangles is None else triangles, len(points))
     metrics = compute_metrics(points, topology)

@@ -50,7 +50,7 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
     density, note = density_of(mesh) if density is None else (density, "")
     notes = [note] if note else []
     if mesh.fixed_cells is not None:
-        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held are not counted")
+        notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held fixed are not counted")
     return _measured(mesh, density), "; ".join(notes)
 
 

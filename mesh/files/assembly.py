@@ -130,7 +130,7 @@ def _radius_of(points: Array, distance: Array, attribute: object, changes: FileC
     radius = 1.0 if abs(radius - 1.0) <= OUTSIDE_TOLERANCE else float(f"{radius:.10g}")
     stated = "missing" if attribute is None else str(attribute)
     changes.said.append(
-        f"the attribute sphere_radius is {stated}, but the coordinates lie at {radius:.10g}, which counts"
+        f"the attribute sphere_radius is {stated}, but the coordinates lie at {radius:.10g}, which is used"
     )
     return radius
 

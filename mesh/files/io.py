@@ -111,7 +111,7 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
     """
     path = Path(path)
     if path.exists() and not path.is_file():
-        raise MeshError(f"{path}: this is no file; give an MPAS mesh file")
+        raise MeshError(f"{path}: not a file; give an MPAS mesh file")
     try:
         content, generation = _read(path)
         mesh, changes = assembled_mesh(content, recompute_metrics)

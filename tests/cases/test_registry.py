@@ -186,7 +186,7 @@ def test_cases_show_name_title_and_what_is_not_the_default(splash: Path) -> None
         (HEAD, "mine.py", r"mine.py is a file; name the class in it as well: .*mine.py:MyCase"),
         (HEAD, "mine.py:Mine", "holds no 'Mine'; it holds no class derived from cases.Case"),
         (HEAD + "class Other(Case):" + METHODS, "mine.py:Mine", "holds no 'Mine'; it holds Other$"),
-        (HEAD + "class Mine:" + METHODS, "mine.py:Mine", "is no case; derive the class from cases.Case"),
+        (HEAD + "class Mine:" + METHODS, "mine.py:Mine", "is not a case; derive the class from cases.Case"),
         (HEAD + "class Mine(Case):\n    title = 'x'", "mine.py:Mine", "lacks streamfunction and thickness"),
         (
             HEAD + "class Mine(Case):" + METHODS.replace('    title = "Mine"\n', ""),

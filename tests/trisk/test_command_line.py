@@ -225,7 +225,7 @@ def test_meshes_under_a_density(trisk, mesh_file: Path, tmp_path: Path) -> None:
     measured = json.loads(trisk("quality", output, "--json")[1])
     assert measured["cells"] > 250
     assert measured["residual"] <= 1e-6
-    assert re.fullmatch(r"\d+ generators that were held are not counted", measured["residual_note"])
+    assert re.fullmatch(r"\d+ generators that were held fixed are not counted", measured["residual_note"])
     assert "on the residual" in trisk("quality", output)[1]
 
 
@@ -248,7 +248,7 @@ def test_mesh_under_a_density_from_a_file(trisk, tmp_path: Path) -> None:
     field.unlink()
     measured = json.loads(trisk("quality", output, "--json")[1])
     assert measured["residual"] is None
-    assert measured["residual_note"].endswith("field.nc4, which is not there or has changed since")
+    assert measured["residual_note"].endswith("field.nc4, which is missing or has changed since")
     assert "unknown" in trisk("quality", output)[1]
 
 

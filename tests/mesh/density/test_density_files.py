@@ -151,27 +151,27 @@ def test_packed_values_are_unpacked(tmp_path: Path, plain: np.ndarray) -> None:
 
 
 ASSUMED = {
-    "no units, degrees": ("lat", LATITUDE, LONGITUDE, {}, "lat and lon without units, taken for degrees"),
+    "no units, degrees": ("lat", LATITUDE, LONGITUDE, {}, "lat and lon without units, taken to be in degrees"),
     "no units, radians": (
         "lat",
         np.radians(LATITUDE),
         np.radians(LONGITUDE),
         {},
-        "lat and lon without units, taken for radians",
+        "lat and lon without units, taken to be in radians",
     ),
     "co-latitude": (
         "colatitude",
         90.0 - LATITUDE,
         LONGITUDE,
         {"units": "degrees"},
-        "colatitude is taken for co-latitude, which counts from the north pole",
+        "colatitude is taken to be co-latitude, counted from the north pole",
     ),
     "co-latitude in radians": (
         "colat",
         np.radians(90.0 - LATITUDE),
         np.radians(LONGITUDE),
         {"units": "radians"},
-        "colat is taken for co-latitude",
+        "colat is taken to be co-latitude",
     ),
 }
 
@@ -196,7 +196,7 @@ REFUSED = {
         "lat goes from 0 to 180 degrees, which are",
     ),
     "degrees that say radians": ("lat", LATITUDE, LONGITUDE, RADIANS, "lat goes from -5156.62 to 5156.62 degrees"),
-    "metres that say degrees": ("lat", LATITUDE, 1e5 * LONGITUDE, {"units": "degrees"}, "which are no longitudes"),
+    "metres that say degrees": ("lat", LATITUDE, 1e5 * LONGITUDE, {"units": "degrees"}, "which are not longitudes"),
     "kilometres": (
         "lat",
         LATITUDE,
@@ -345,7 +345,7 @@ def test_density_on_cells_may_be_in_any_coordinates(radius: float, tmp_path: Pat
             Shaping(power=-4.0),
             "field goes from 0 to .* has no finite power -4",
         ),
-        (VALUES[:1], Shaping(), "density has one latitude; a grid needs two at least"),
+        (VALUES[:1], Shaping(), "density has one latitude; a grid needs at least two"),
     ],
 )
 def test_fields_that_give_no_density_are_refused(

@@ -61,7 +61,7 @@ def test_density_is_looked_for_in_this_folder_too(
 def test_changed_file_is_noticed(mesh: VoronoiMesh, tmp_path: Path) -> None:
     grid(tmp_path / "grid.nc", 1.001)
     assert np.isnan(mesh_quality(mesh).residual)
-    assert quality_and_note(mesh)[1].endswith("grid.nc, which is not there or has changed since")
+    assert quality_and_note(mesh)[1].endswith("grid.nc, which is missing or has changed since")
     grid(tmp_path / "grid.nc")
     assert mesh_quality(mesh).residual <= TOLERANCE
 
@@ -100,7 +100,7 @@ def test_held_generators_do_not_count(tmp_path: Path) -> None:
     np.testing.assert_array_equal(read.fixed_cells, result.fixed)
     assert mesh_quality(read).residual == pytest.approx(result.history.residual[-1], rel=1e-3)
     assert mesh_quality(replace(read, fixed_cells=None)).residual > 1e-3
-    assert quality_and_note(read)[1] == f"{result.fixed.sum()} generators that were held are not counted"
+    assert quality_and_note(read)[1] == f"{result.fixed.sum()} generators that were held fixed are not counted"
     better = well_center(result.points, result.triangles, box, result.fixed)
     centred = mesh_of(replace(result, points=better.points, triangles=better.triangles), box)
     assert mesh_quality(centred).residual == pytest.approx(better.residual, rel=1e-6)

@@ -284,7 +284,7 @@ def test_the_coordinates_tell_the_radius(mesh_file: Path, value: object) -> None
         file.delncattr("sphere_radius")
         if value is not None:
             file.sphere_radius = value
-    words = rf"sphere_radius is {'missing' if value is None else value}, but the coordinates lie at 1, which counts$"
+    words = rf"sphere_radius is {'missing' if value is None else value}, but the coordinates lie at 1, which is used$"
     read = warned_of(mesh_file, words)
     assert read.sphere_radius == 1.0
     assert mesh_hash(read) == mesh_hash(original)
