@@ -13,6 +13,7 @@ _PLACES = {
         *("CASES", "Case", "Galewsky", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5", "Williamson6"),
         *("find_case", "parameter"),
     ),
+    "postprocess": ("compare_runs", "open_run", "plot_field"),
 }
 _PACKAGE_OF = {name: package for package, names in _PLACES.items() for name in names}
 

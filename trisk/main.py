@@ -364,8 +364,7 @@ def compare(
 
     Prints error norms and what was conserved, and draws maps.
     """
-    from postprocess.compare.comparison import compare as compare_runs
-    from postprocess.compare.comparison import comparison_record
+    from postprocess.compare.comparison import compare_runs, comparison_record
     from postprocess.figures.compare_maps import write_maps
     from postprocess.runs.folders import require_possible_folder
     from swe.output.files import FIGURES_FOLDER
@@ -373,7 +372,7 @@ def compare(
 
     folder = output or run_directories[0] / FIGURES_FOLDER
     require_possible_folder(folder)
-    comparison = compare_runs(run_directories, reference, days or ())
+    comparison = compare_runs(*run_directories, reference=reference, days=days or ())
     if not as_json:
         print_comparison(comparison)
     maps = write_maps(comparison, folder)

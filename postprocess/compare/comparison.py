@@ -8,10 +8,11 @@ velocities of a cell's edges: this averages the noise from edge to edge and adds
 at the edges, that is, where it is not a run.
 """
 
+import math
 import os
 import warnings
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, astuple, dataclass
 from functools import partial
 
 import numpy as np
@@ -21,7 +22,7 @@ from mesh.integrals.quadrature import sample_cells
 from mesh.safe_files import AnyPath
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import RunSolution, Solution, case_of, choose_solution, require_same_problem
-from postprocess.runs.reading import DAY_TOLERANCE, Run, days_in_words, days_of_both, read_run
+from postprocess.runs.reading import DAY_TOLERANCE, Run, checked, days_in_words, days_of_both, read_run
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError
 
@@ -58,13 +59,24 @@ class Entry:
     conservation: dict[str, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
-    """Entries of all runs on all days, day by day, and the solution that they are compared with."""
+    """Entries of all runs on all days, day by day, and the solution that they are compared with.
+
+    In print it is a table of the norms.
+    """
 
     solution: Solution
     days: tuple[float, ...]
     entries: tuple[Entry, ...]
+
+    def __repr__(self) -> str:
+        rows: list[tuple[str, ...]] = [("day", "run", "cells", "field", "l1", "l2", "linf")]
+        for entry in self.entries:
+            run = (f"{entry.day:g}", str(entry.run.directory), str(entry.run.mesh.n_cells))
+            for field, norms in entry.norms.items():
+                rows.append((*run, field, *(in_scientific_notation(value) for value in astuple(norms))))
+        return f"{self.case}: error norms, reference: {self.solution.name}\n" + _aligned(rows)
 
     @property
     def compared(self) -> list[Run]:
@@ -77,18 +89,20 @@ class Comparison:
         return self.entries[0].run.case
 
 
-def compare(directories: Sequence[AnyPath], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
-    """Compare the runs in `directories`; see `compare_runs`."""
-    return compare_runs([read_run(directory) for directory in directories], reference, days)
+def compare_runs(*runs: Run | AnyPath, reference: Run | AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
+    """Compare runs, or those in directories, on `days`, by default on the last that all and the reference have.
 
-
-def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
-    """Compare runs on `days`, by default on the last that all and the reference have.
-
-    `reference` is "auto", "exact", a reference file or a run directory: see
+    `reference` is a run, its directory, "auto", "exact" or a reference file: see
     `postprocess.compare.solutions.choose_solution`. Raises `InputError` where the runs are not of one case, one radius
     and the same parameters, where a day is missing or where there is nothing to compare with.
     """
+    if not runs:
+        raise InputError("there is nothing to compare; name a run")
+    wanted = os.fspath(reference.directory if isinstance(reference, Run) else reference)
+    return _comparison([checked(run) if isinstance(run, Run) else read_run(run) for run in runs], wanted, days)
+
+
+def _comparison(runs: Sequence[Run], reference: str, days: Sequence[float]) -> Comparison:
     for run in runs[1:]:
         _require_same_radius(run, runs[0])
         require_same_problem(run.directory, run.case, run.parameters, runs[0])
@@ -96,7 +110,7 @@ def compare_runs(runs: Sequence[Run], reference: AnyPath = "auto", days: Sequenc
         for day in days:
             run.require_snapshot(day)
     candidates = list(days) if days else _common_days(runs)
-    solution = choose_solution(os.fspath(reference), runs, candidates, every=bool(days))
+    solution = choose_solution(reference, runs, candidates, every=bool(days))
     if isinstance(solution, RunSolution):
         _require_same_radius(solution.run, runs[0])
     chosen = tuple(sorted(set(days))) if days else (_last_known_day(solution, candidates),)
@@ -209,6 +223,18 @@ def _last_known_day(solution: Solution, days: Sequence[float]) -> float:
             f"{days_in_words(days)} in common; make a snapshot of one of the former"
         )
     return known[-1]
+
+
+def in_scientific_notation(value: float) -> str:
+    """A norm in print; a dash where it does not exist."""
+    return "-" if math.isnan(value) else f"{value:.2e}"
+
+
+def _aligned(rows: Sequence[Sequence[str]]) -> str:
+    """Rows as lines whose columns stand below each other."""
+    widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+    lines = ("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)) for row in rows)
+    return "\n".join(line.rstrip() for line in lines)
 
 
 def comparison_record(comparison: Comparison) -> dict[str, object]:

@@ -17,7 +17,8 @@ from mesh.arrays import Array
 from mesh.safe_files import AnyPath
 from postprocess.compare.comparison import Comparison, fields_of, fields_on
 from postprocess.compare.solutions import RunSolution, Solution
-from postprocess.figures.plots import CENTRAL_LONGITUDE, DOTS_PER_INCH, draw_mollweide_raster
+from postprocess.figures.maps import CENTRAL_LONGITUDE, draw_mollweide_raster
+from postprocess.figures.plots import DOTS_PER_INCH
 from postprocess.figures.projections import mollweide_raster
 from postprocess.runs.folders import prepared_folder
 
@@ -117,7 +118,7 @@ def map_figure(panels: list[Array], titles: list[str], heading: str, label: str,
     grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     options = _colours(panels, scale)
     for axes, title, values in zip(grid, titles, panels, strict=False):
-        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), options)
+        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), options).images[-1]
         axes.set_title(title, fontsize=9)
     for axes in grid[len(panels) :]:
         axes.axis("off")

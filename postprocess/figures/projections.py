@@ -1,9 +1,10 @@
-"""Voronoi cells as polygons on flat maps: the equal-area Mollweide view of the globe and orthographic views.
+"""Polygons of the sphere on flat maps: the equal-area Mollweide map, the cylindrical one and orthographic views.
 
-Maps have the sphere's radius as their unit: the Mollweide ellipse has half axes 2 sqrt(2) and sqrt(2), the
-orthographic disc radius 1.
+The Mollweide and orthographic maps have the sphere's radius as their unit: the Mollweide ellipse has half axes
+2 sqrt(2) and sqrt(2), the orthographic disc radius 1. The cylindrical map is in degrees of longitude and latitude.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,13 +12,12 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.geometry.angles import TURN, about_zero
 from mesh.geometry.sphere import dot, from_lonlat, normalize, to_lonlat
-from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.figures.patches import Patches
 
 NEWTON_ITERATIONS = 12
 POINTS_ON_LONG_SIDE = 16
 LONG_SIDE = np.radians(15.0)
 """Sides that span more longitude than this are drawn as curves of several points: they lie near a pole."""
-
 
 ON_THE_POLE = 1e-9
 """Sides closer to a pole than this (radians) run through it."""
@@ -25,10 +25,10 @@ ON_THE_POLE = 1e-9
 
 @dataclass(frozen=True)
 class Polygons:
-    """Outlines on a map, each (n_points, 2), and the cell that each shows; a cell on a seam is shown twice."""
+    """Outlines on a map, each (n_points, 2), and the number of the patch that each shows; one on a seam has two."""
 
     outlines: list[Array]
-    cells: Index
+    shown: Index
 
 
 def mollweide(longitude: Array, latitude: Array) -> Array:
@@ -63,40 +63,53 @@ def orthographic(points: Array, longitude: float, latitude: float) -> Array:
     return points @ np.stack([right, np.cross(towards, right), towards], axis=1)
 
 
-def cell_corners(mesh: VoronoiMesh) -> Array:
-    """Vertices (n_cells, max_edges, 3) of every cell on the unit sphere, the last repeated to fill."""
-    columns = np.minimum(np.arange(mesh.max_edges), mesh.n_edges_on_cell[:, None] - 1)
-    rings = np.take_along_axis(mesh.vertices_on_cell, columns, axis=1)
-    return normalize(mesh.vertex_points)[rings]
+def cylindrical(longitude: Array, latitude: Array) -> Array:
+    """Map coordinates (..., 2), degrees, of longitude from the central meridian and latitude (rad)."""
+    return np.degrees(np.stack([longitude, latitude], axis=-1))
 
 
-def mollweide_polygons(mesh: VoronoiMesh, central_longitude: float) -> Polygons:
-    """All cells on the Mollweide map; what passes the map's rim is to be clipped there."""
-    corners = cell_corners(mesh)
-    center = _from_meridian(mesh.lon_cell, central_longitude)
+@dataclass(frozen=True)
+class GlobeMap:
+    """A map of the whole globe on which meridians end at the poles: how it maps, and the height of the poles on it.
+
+    `project` takes longitude from the central meridian, which may pass +-pi, and latitude, rad.
+    """
+
+    project: Callable[[Array, Array], Array]
+    pole: float
+
+
+MOLLWEIDE = GlobeMap(mollweide, np.sqrt(2.0))
+CYLINDRICAL = GlobeMap(cylindrical, 90.0)
+
+
+def globe_polygons(globe_map: GlobeMap, patches: Patches, central_longitude: float) -> Polygons:
+    """All patches on a map of the globe; what passes the map's rim is to be clipped there."""
+    corners = patches.corners
+    center = _from_meridian(patches.longitude, central_longitude)
     longitude, latitude = to_lonlat(corners)
-    longitude = center[:, None] + about_zero(longitude - mesh.lon_cell[:, None])
+    longitude = center[:, None] + about_zero(longitude - patches.longitude[:, None])
     steps = np.abs(np.diff(longitude, axis=1, append=longitude[:, :1]))
     near_pole = (steps.max(axis=1) > LONG_SIDE) | (np.abs(latitude).max(axis=1) > 0.5 * np.pi - ON_THE_POLE)
-    outlines = mollweide(longitude, latitude)
+    outlines = globe_map.project(longitude, latitude)
     shift = np.where(longitude.max(axis=1) > np.pi, -TURN, TURN)
     on_seam = (np.abs(longitude).max(axis=1) > np.pi) & ~near_pole
-    copies = mollweide(longitude[on_seam] + shift[on_seam, None], latitude[on_seam])
-    polar_outlines, polar_cells = [], []
-    for cell in np.flatnonzero(near_pole):
-        ring = corners[cell, : mesh.n_edges_on_cell[cell]]
-        for outline in _outlines_near_pole(ring, float(mesh.lon_cell[cell]), float(center[cell])):
+    copies = globe_map.project(longitude[on_seam] + shift[on_seam, None], latitude[on_seam])
+    polar_outlines, polar = [], []
+    for patch in np.flatnonzero(near_pole):
+        ring = corners[patch, : patches.counts[patch]]
+        for outline in _outlines_near_pole(globe_map, ring, float(patches.longitude[patch]), float(center[patch])):
             polar_outlines.append(outline)
-            polar_cells.append(cell)
+            polar.append(patch)
     return Polygons(
         [*outlines[~near_pole], *copies, *polar_outlines],
-        np.concatenate([np.flatnonzero(~near_pole), np.flatnonzero(on_seam), np.array(polar_cells, dtype=int)]),
+        np.concatenate([np.flatnonzero(~near_pole), np.flatnonzero(on_seam), np.array(polar, dtype=int)]),
     )
 
 
-def orthographic_polygons(mesh: VoronoiMesh, longitude: float, latitude: float) -> Polygons:
-    """The cells on the hemisphere that faces the viewer, drawn up to the limb."""
-    corners = orthographic(cell_corners(mesh), longitude, latitude)
+def orthographic_polygons(patches: Patches, longitude: float, latitude: float) -> Polygons:
+    """The patches on the hemisphere that faces the viewer, drawn up to the limb."""
+    corners = orthographic(patches.corners, longitude, latitude)
     visible = corners[..., 2].max(axis=1) > 0.0
     flat, depth = corners[visible, :, :2], corners[visible, :, 2]
     at_limb = flat / np.linalg.norm(flat, axis=-1, keepdims=True)
@@ -107,23 +120,23 @@ def _from_meridian(longitude: Array, central_longitude: float) -> Array:
     return about_zero(longitude - central_longitude)
 
 
-def _outlines_near_pole(corners: Array, cell_longitude: float, center: float) -> list[Array]:
-    """Outlines on the map of one cell at or near a pole, its long sides as curves.
+def _outlines_near_pole(globe_map: GlobeMap, corners: Array, within: float, center: float) -> list[Array]:
+    """Outlines on the map of one patch at or near a pole, its long sides as curves.
 
-    `center` is the longitude of the cell from the map's central meridian.
+    `within` is a longitude within the patch, and `center` the same from the map's central meridian.
     """
     points = np.concatenate(
         [_side(start, end) for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True)]
     )
     longitude, latitude = to_lonlat(points)
-    longitude = center + about_zero(longitude - cell_longitude)
+    longitude = center + about_zero(longitude - within)
     turns = (-TURN, 0.0, TURN)
     if not _surrounds_pole(corners):
-        return [mollweide(longitude + turn, latitude) for turn in turns]
-    # The cell is all that lies poleward of its sides: a strip across the map, closed beyond the rim.
+        return [globe_map.project(longitude + turn, latitude) for turn in turns]
+    # The patch is all that lies poleward of its sides: a strip across the map, closed beyond the rim.
     order = np.argsort(longitude)
-    strip = mollweide(np.concatenate([longitude[order] + turn for turn in turns]), np.tile(latitude[order], 3))
-    top = np.copysign(np.sqrt(2.0), latitude[0])
+    strip = globe_map.project(np.concatenate([longitude[order] + turn for turn in turns]), np.tile(latitude[order], 3))
+    top = np.copysign(globe_map.pole, latitude[0])
     return [np.concatenate([strip, [[strip[-1, 0], top], [strip[0, 0], top]]])]
 
 
@@ -144,7 +157,7 @@ def _side(start: Array, end: Array) -> Array:
 
 
 def _surrounds_pole(corners: Array) -> bool:
-    """Whether a pole lies strictly inside a counter-clockwise cell."""
+    """Whether a pole lies strictly inside a counter-clockwise patch."""
     pole = np.array([0.0, 0.0, np.copysign(1.0, corners[:, 2].mean())])
     sides = dot(np.cross(corners, np.roll(corners, -1, axis=0)), np.broadcast_to(pole, corners.shape))
     return bool(np.all(sides > ON_THE_POLE * np.linalg.norm(corners - np.roll(corners, -1, axis=0), axis=1)))

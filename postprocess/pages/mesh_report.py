@@ -171,7 +171,7 @@ def meshes_figure(meshes: dict[str, VoronoiMesh]) -> Figure:
     for (wide, round_), (title, mesh) in zip(panels, meshes.items(), strict=True):
         width = np.degrees(np.sqrt(mesh.area_cell))
         draw_mollweide(wide, mesh, width, {"cmap": "viridis"})
-        drawn = draw_orthographic(round_, mesh, width, {"cmap": "viridis"})
+        drawn = draw_orthographic(round_, mesh, width, {"cmap": "viridis"}).collections[-1]
         drawn.set(edgecolor="white", linewidth=0.2)
         figure.colorbar(drawn, ax=[wide, round_], label="root of cell area (degrees)", shrink=0.8)
         wide.set_title(title)

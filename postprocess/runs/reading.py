@@ -1,9 +1,11 @@
 """Read what a run left in its directory."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import numpy as np
 
@@ -13,10 +15,14 @@ from mesh.safe_files import AnyPath, dataset
 from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.runs.labelled import opened_by_xarray
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.outputs import FIELDS
 from swe.errors import InputError
 from swe.output.files import DIAGNOSTICS_FILE, HISTORY_FILE, MESH_FILE, load_record, read_series
+
+if TYPE_CHECKING:
+    import xarray
 
 DAY_TOLERANCE = 1e-6
 """Snapshots less than this apart, in days, are of the same day."""
@@ -46,23 +52,71 @@ class Snapshot:
     fields: dict[str, Array]
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A run directory: its mesh in metres, its case, the days of its snapshots and its diagnostics by name.
+    """A run directory: what its record says, and its files, each read when it is asked for.
 
     `case` is the name of the case and `parameters` are what it was run with; `sampling` says what the initial thickness
-    was, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` their number.
+    was, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` their number. `days` are those
+    of the snapshots, on a mesh of `cells` cells. `record` is all that `run.json` holds.
+
+    `data` and `diagnostics` keep their files open until the run is closed, by `close` or at the end of a `with`.
     """
 
     directory: Path
-    mesh: VoronoiMesh
+    record: Mapping[str, Any]
     case: str
     parameters: dict[str, float]
     sampling: Sampling
     time_step: float
     steps: int
     days: Array
-    series: dict[str, Array]
+    cells: int
+
+    def __repr__(self) -> str:
+        of_days = "" if "days" not in self.record else f" of {self.record['days']:g}"
+        radius = self.parameters.get("radius")
+        sphere = "" if radius is None else f" on a sphere of radius {radius:g} m"
+        return (
+            f"<Run of {self.case} in {self.directory}\n"
+            f"  {self.record.get('status', 'without a status')}, day {self.days[-1]:g}{of_days}\n"
+            f"  mesh: {self.cells} cells{sphere}\n"
+            f"  snapshots: {len(self.days)}, days {days_in_words(self.days)}>"
+        )
+
+    def __enter__(self) -> "Run":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the files of `data` and `diagnostics`; asked for again, they are opened again."""
+        for name in ("data", "diagnostics"):
+            opened = vars(self).pop(name, None)
+            if opened is not None:
+                opened.close()
+
+    @cached_property
+    def mesh(self) -> VoronoiMesh:
+        """The mesh, in metres; raises `MeshError` where it is not valid."""
+        return read_mesh(self.directory / MESH_FILE)
+
+    @cached_property
+    def series(self) -> dict[str, Array]:
+        """Diagnostics (n,) by name, and their `time`, s."""
+        with _readable(self.directory):
+            return read_series(self.directory / DIAGNOSTICS_FILE)
+
+    @cached_property
+    def data(self) -> "xarray.Dataset":
+        """Snapshots and geometry, as in `history.nc`; values are read when they are needed. Needs xarray."""
+        return opened_by_xarray(self.directory / HISTORY_FILE)
+
+    @cached_property
+    def diagnostics(self) -> "xarray.Dataset":
+        """Time series of what is conserved and of what limits the step, as in `diagnostics.nc`. Needs xarray."""
+        return opened_by_xarray(self.directory / DIAGNOSTICS_FILE)
 
     def snapshot(self, day: float) -> Snapshot:
         """The snapshot of `day`; raise `InputError` where there is none."""
@@ -94,45 +148,69 @@ class Run:
         return snapshot
 
 
-def read_run(directory: AnyPath) -> Run:
-    """Open a run directory; raise `InputError` where it holds no run, `MeshError` where its mesh is not valid."""
+def open_run(directory: AnyPath) -> Run:
+    """Open a run directory, of a run that has ended or goes on; raise `InputError` where it holds no run.
+
+    Mesh, fields and diagnostics are read, and checked, when they are asked for.
+    """
     directory = Path(directory)
-    try:
+    with _readable(directory):
         record = load_record(directory)
-        series = read_series(directory / DIAGNOSTICS_FILE)
         with dataset(directory / HISTORY_FILE) as file:
             days = np.asarray(file["time"][:]) / SECONDS_PER_DAY
-        mesh = read_mesh(directory / MESH_FILE)
+            cells = len(file.dimensions["nCells"])
         configuration = record["configuration"]
         if configuration["sampling"] not in get_args(Sampling):
             raise ValueError(f"its sampling is {configuration['sampling']!r}")
         run = Run(
             directory,
-            mesh,
+            record,
             case=str(record["case"]),
             parameters=dict(record["parameters"].items()),
             sampling=configuration["sampling"],
             time_step=float(configuration["time_step"]),
             steps=int(record["steps"]),
             days=days,
-            series=series,
+            cells=cells,
         )
-        _require_rows(run)
+    _require_rows(directory / HISTORY_FILE, run.days)
+    return run
+
+
+def read_run(directory: AnyPath) -> Run:
+    """Open a run directory and check it, see `open_run` and `checked`."""
+    return checked(open_run(directory))
+
+
+def checked(run: Run) -> Run:
+    """Read mesh, diagnostics and last snapshot of a run; return it.
+
+    Raises `InputError` where they cannot be read or do not fit together, and `MeshError` where the mesh is not valid.
+    """
+    _require_rows(run.directory / DIAGNOSTICS_FILE, run.series["time"])
+    with _readable(run.directory):
         _require_sizes(run.last_snapshot(), run)
-        return run
+    return run
+
+
+@contextmanager
+def _readable(directory: Path) -> Iterator[None]:
+    """Raise `InputError` where what is read of a run directory is not there, or not what a run writes."""
+    try:
+        yield
     except (MeshError, InputError):
         raise
     except (OSError, RuntimeError, ValueError, AttributeError, LookupError, TypeError, ArithmeticError) as error:
-        raise InputError(f"{directory} holds no readable run ({error}); name a directory that a run wrote") from error
+        reason: object = error if directory.exists() else "there is no such folder"
+        raise InputError(f"{directory} holds no readable run ({reason}); name a directory that a run wrote") from error
 
 
-def _require_rows(run: Run) -> None:
-    """Raise `InputError` where the files have no rows, or not those of ascending times that a run writes."""
-    for name, times in ((HISTORY_FILE, run.days), (DIAGNOSTICS_FILE, run.series["time"])):
-        if not len(times):
-            raise InputError(f"{run.directory / name} has no rows; the run was killed at its start, run it again")
-        if not np.all(np.diff(times, prepend=-1.0) > 0.0):
-            raise InputError(f"{run.directory / name} has times that do not ascend; it is damaged, run it again")
+def _require_rows(path: Path, times: Array) -> None:
+    """Raise `InputError` where a file has no rows, or not those of ascending times that a run writes."""
+    if not len(times):
+        raise InputError(f"{path} has no rows; the run was killed at its start, run it again")
+    if not np.all(np.diff(times, prepend=-1.0) > 0.0):
+        raise InputError(f"{path} has times that do not ascend; it is damaged, run it again")
 
 
 def _require_sizes(snapshot: Snapshot, run: Run) -> None:

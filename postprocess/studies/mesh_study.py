@@ -104,7 +104,7 @@ def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> 
 def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
     """The run beside the solution of its case; None where that is not known, for a reason that is told."""
     try:
-        return compare_runs([run], days=[day])
+        return compare_runs(run, days=[day])
     except InputError as error:
         tell(f"no errors: {error}")
         return None

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
 from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array, Index
 from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import normalize
-from postprocess.figures.plots import CENTRAL_LONGITUDE, draw_mollweide
+from postprocess.figures.maps import CENTRAL_LONGITUDE, add_polygons, draw_mollweide
+from postprocess.figures.patches import cell_patches
 from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
 from postprocess.studies.mesh_study import Member, thickness_error
 
@@ -35,43 +35,47 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     """
     figure, panels = _panel_for_each(members, 2, (6.4, 3.9))
     for axes, member in panels:
-        error = thickness_error(member, day)
-        drawn = draw_mollweide(axes, member.mesh, error, _colours(error))
-        _mark_irregular_cells(axes, member)
-        worst = int(np.argmax(np.abs(error)))
-        axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
-        axes.set_title(
-            f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9
-        )
-        _colour_bar(figure, axes, drawn)
+        _colour_bar(figure, draw_error_map(axes, member, day))
     figure.suptitle(heading)
     return figure
+
+
+def draw_error_map(axes: Axes, member: Member, day: float) -> Axes:
+    """Draw one map of `map_figure`."""
+    error = thickness_error(member, day)
+    draw_mollweide(axes, member.mesh, error, _colours(error))
+    _mark_irregular_cells(axes, member)
+    worst = int(np.argmax(np.abs(error)))
+    axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
+    axes.set_title(f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9)
+    return axes
 
 
 def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     """The error of thickness round the worst cell of each mesh, with the number of sides of irregular cells."""
     figure, panels = _panel_for_each(members, 4, (3.2, 4.2))
     for axes, member in panels:
-        mesh, error = member.mesh, thickness_error(member, day)
-        worst = int(np.argmax(np.abs(error)))
-        view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
-        flat = orthographic(normalize(mesh.cell_points), *view)
-        reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.sphere_radius
-        near = (np.abs(flat[:, :2]).max(axis=1) < 1.5 * reach) & (flat[:, 2] > 0.0)
-        polygons = orthographic_polygons(mesh, *view)
-        kept = np.flatnonzero(near[polygons.cells])
-        cells = polygons.cells[kept]
-        outlines = [polygons.outlines[each] for each in kept]
-        collection = PolyCollection(outlines, array=error[cells], edgecolors="grey", linewidths=0.4, **_colours(error))
-        axes.add_collection(collection)
-        for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
-            x, y, _ = flat[cell]
-            axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=7, clip_on=True)
-        axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
-        axes.set_title(f"{member.family}\n{place_in_words(*np.degrees(view))}", fontsize=9)
-        _colour_bar(figure, axes, collection)
+        _colour_bar(figure, draw_closeup(axes, member, day))
     figure.suptitle(heading)
     return figure
+
+
+def draw_closeup(axes: Axes, member: Member, day: float) -> Axes:
+    """Draw one panel of `closeup_figure`."""
+    mesh, error = member.mesh, thickness_error(member, day)
+    worst = int(np.argmax(np.abs(error)))
+    view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
+    flat = orthographic(normalize(mesh.cell_points), *view)
+    reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.sphere_radius
+    cells = np.flatnonzero((np.abs(flat[:, :2]).max(axis=1) < 1.5 * reach) & (flat[:, 2] > 0.0))
+    polygons = orthographic_polygons(cell_patches(mesh).taken(cells), *view)
+    add_polygons(axes, polygons, error[cells], {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)})
+    for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
+        x, y, _ = flat[cell]
+        axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=7, clip_on=True)
+    axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
+    axes.set_title(f"{member.family}\n{place_in_words(*np.degrees(view))}", fontsize=9)
+    return axes
 
 
 def place_in_words(longitude: float, latitude: float) -> str:
@@ -99,8 +103,8 @@ def _colours(error: Array) -> dict:
     return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=COLOUR_RANGE * root_mean_square or 1.0)}
 
 
-def _colour_bar(figure: Figure, axes: Axes, drawn: PolyCollection) -> None:
-    bar = figure.colorbar(drawn, ax=axes, location="bottom", shrink=0.6, aspect=30, extend="both")
+def _colour_bar(figure: Figure, axes: Axes) -> None:
+    bar = figure.colorbar(axes.collections[-1], ax=axes, location="bottom", shrink=0.6, aspect=30, extend="both")
     bar.set_label("error of thickness (m)", fontsize=7)
     bar.ax.tick_params(labelsize=7)
 

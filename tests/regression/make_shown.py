@@ -103,7 +103,7 @@ def _runs(found: Shown) -> None:
     runs = [read_run("icosahedral"), read_run("spiral")]
     with found.figures("run"):
         plot_run(runs[0], "figures")
-    comparison = compare_runs(runs, "icosahedral")
+    comparison = compare_runs(*runs, reference="icosahedral")
     with found.figures("maps"):
         write_maps(comparison, "maps")
     found.found["comparison as a record"] = comparison_record(comparison)

@@ -16,7 +16,7 @@ from mesh.discrete.build import mesh_from_points
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits
 from mesh.geometry.sphere import normalize
-from postprocess.compare.comparison import compare
+from postprocess.compare.comparison import compare_runs
 from swe import Simulation
 from swe.output.files import DIAGNOSTICS_FILE, read_series
 
@@ -84,7 +84,7 @@ def print_conservation(folder: Path) -> None:
 
 def print_errors(folder: Path) -> None:
     """Error of thickness at day 15 on the SCVT, with both integrators."""
-    comparison = compare([folder / "scvt-rk4", folder / "scvt-rrk4"], "auto", [15.0])
+    comparison = compare_runs(folder / "scvt-rk4", folder / "scvt-rrk4", reference="auto", days=[15.0])
     for entry in comparison.entries:
         print(f"l2 of thickness at day 15, {entry.run.directory.name}: {entry.norms['thickness'].l2:.4e}")
 

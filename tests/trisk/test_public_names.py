@@ -7,14 +7,15 @@ import pytest
 
 import cases
 import mesh
+import postprocess
 import swe
 import trisk
 
 
 def test_names_are_those_of_the_packages() -> None:
-    assert trisk.__all__ == sorted([*mesh.__all__, *swe.__all__, *cases.__all__])
+    assert trisk.__all__ == sorted([*mesh.__all__, *swe.__all__, *cases.__all__, *postprocess.__all__])
     assert set(trisk.__all__) <= set(dir(trisk))
-    for package in (mesh, swe, cases):
+    for package in (mesh, swe, cases, postprocess):
         for name in package.__all__:
             assert getattr(trisk, name) is getattr(package, name)
 
@@ -22,7 +23,8 @@ def test_names_are_those_of_the_packages() -> None:
 def test_packages_wait_until_they_are_asked_for() -> None:
     program = (
         "import sys, trisk\n"
-        "assert not {'numpy', 'numba', 'mesh', 'swe', 'cases'} & set(sys.modules)\n"
+        "packages = {'mesh', 'swe', 'cases', 'postprocess', 'numpy', 'numba', 'matplotlib', 'xarray'}\n"
+        "assert not packages & set(sys.modules)\n"
         "assert trisk.scvt_mesh(42).n_cells == 42\n"
         "assert 'swe' not in sys.modules\n"
     )

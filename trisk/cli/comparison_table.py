@@ -1,11 +1,9 @@
 """What `trisk compare` prints: error norms, and what the runs had conserved."""
 
-import math
-
 from rich.console import Console
 from rich.table import Table
 
-from postprocess.compare.comparison import SHOWN_DIAGNOSTICS, Comparison
+from postprocess.compare.comparison import SHOWN_DIAGNOSTICS, Comparison, in_scientific_notation
 
 FIELD_LABELS = {
     "thickness": "thickness",
@@ -28,7 +26,7 @@ def _norms_table(comparison: Comparison) -> Table:
     for entry in comparison.entries:
         beginning = (f"{entry.day:g}", str(entry.run.directory), str(entry.run.mesh.n_cells))
         for field, norms in entry.norms.items():
-            values = (_in_scientific_notation(value) for value in (norms.l1, norms.l2, norms.linf))
+            values = (in_scientific_notation(value) for value in (norms.l1, norms.l2, norms.linf))
             table.add_row(*beginning, FIELD_LABELS[field], *values)
             beginning = ("", "", "")
         table.add_section()
@@ -39,7 +37,7 @@ def _norms_table(comparison: Comparison) -> Table:
 
 def _uncertainty(comparison: Comparison, day: float) -> str:
     of_fields = comparison.solution.uncertainty(day).items()
-    return f"day {day:g}: " + ", ".join(f"{field} {_in_scientific_notation(value)}" for field, value in of_fields)
+    return f"day {day:g}: " + ", ".join(f"{field} {in_scientific_notation(value)}" for field, value in of_fields)
 
 
 def _conservation_table(comparison: Comparison) -> Table:
@@ -61,7 +59,3 @@ def _table(title: str, *columns: str) -> Table:
     table.columns[1].no_wrap = False
     table.columns[1].overflow = "fold"
     return table
-
-
-def _in_scientific_notation(value: float) -> str:
-    return "-" if math.isnan(value) else f"{value:.2e}"

@@ -1,6 +1,7 @@
 """Runs against solutions and against each other: what is measured, what is chosen, what is refused."""
 
 import json
+import shutil
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,12 +16,12 @@ from cases.base import Case
 from mesh import VoronoiMesh, scvt_mesh
 from mesh.integrals.quadrature import cell_means
 from postprocess.compare import solutions
-from postprocess.compare.comparison import compare, comparison_record, fields_on
+from postprocess.compare.comparison import compare_runs, comparison_record, fields_on
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import ExactSolution, RunSolution, _short
 from postprocess.figures import compare_maps
 from postprocess.reference import stored_references
-from postprocess.runs.reading import read_run
+from postprocess.runs.reading import open_run, read_run
 from swe import Simulation
 from swe.errors import InputError
 
@@ -72,7 +73,7 @@ def with_stored(monkeypatch: pytest.MonkeyPatch, reference: "Stored | None") -> 
 
 def test_norms_from_the_exact_solution(runs: Path) -> None:
     """The numbers are those of the plain formulae at cells, edges and vertices."""
-    comparison = compare([Path("steady-162"), Path("steady-642")])
+    comparison = compare_runs(Path("steady-162"), Path("steady-642"))
     assert comparison.solution.name == "exact solution"
     assert comparison.days == (DAYS,)
     run, case = read_run(Path("steady-642")), Williamson2()
@@ -96,7 +97,7 @@ def test_norms_from_the_exact_solution(runs: Path) -> None:
 
 def test_runs_on_one_mesh_are_compared_without_interpolation(runs: Path) -> None:
     first, second = (read_run(Path(name)) for name in ("mountain-162", "mountain-162-longer"))
-    comparison = compare([first.directory, second.directory])
+    comparison = compare_runs(first.directory, second.directory)
     assert isinstance(comparison.solution, RunSolution)
     assert comparison.solution.run.directory == first.directory
     assert comparison.days == (1.0,)
@@ -114,15 +115,15 @@ def test_runs_on_one_mesh_are_compared_without_interpolation(runs: Path) -> None
 def test_runs_on_different_meshes_differ_as_their_errors_do(runs: Path) -> None:
     """The coarse run's distance to the fine one is its own error, but for the error of the fine one."""
     coarse, fine = Path("steady-162"), Path("steady-642")
-    of_exact = compare([coarse, fine], "exact")
-    of_fine = compare([coarse], str(fine))
+    of_exact = compare_runs(coarse, fine, reference="exact")
+    of_fine = compare_runs(coarse, reference=str(fine))
     for name in ("thickness", "velocity"):
         own, fine_error = (entry.norms[name].l2 for entry in of_exact.entries)
         assert abs(of_fine.entries[0].norms[name].l2 - own) < 1.2 * fine_error
 
 
 def test_days_that_are_asked_for(runs: Path) -> None:
-    comparison = compare([Path("mountain-162"), Path("mountain-642")], days=[1.0, 0.5])
+    comparison = compare_runs(Path("mountain-162"), Path("mountain-642"), days=[1.0, 0.5])
     assert comparison.days == (0.5, 1.0)
     assert [(entry.day, entry.run.mesh.n_cells) for entry in comparison.entries] == [
         (0.5, 162),
@@ -145,7 +146,7 @@ def test_background_of_a_bell_is_no_signal(small_mesh: VoronoiMesh, tmp_path: Pa
     run = read_run(tmp_path / "bell")
     exact = case.thickness(run.mesh.lon_cell, run.mesh.lat_cell, 43200.0) - case.background_depth
     found = run.last_snapshot().fields["thickness"] - case.background_depth
-    norms = compare([tmp_path / "bell"]).entries[0].norms
+    norms = compare_runs(tmp_path / "bell").entries[0].norms
     assert norms["thickness"].l1 == pytest.approx(scalar_norms(found, exact, run.mesh.area_cell).l1)
     assert norms["thickness"].l1 > 0.1
 
@@ -156,7 +157,7 @@ def test_run_of_cell_means_is_compared_with_means(small_mesh: VoronoiMesh, tmp_p
     exact = fields_on(run, ExactSolution(Williamson2()), 0.0).thickness
     np.testing.assert_allclose(exact, run.snapshot(0.0).fields["thickness"], rtol=1e-14)
     np.testing.assert_allclose(exact, cell_means(run.mesh, Williamson2().thickness), rtol=1e-14)
-    assert compare([tmp_path / "means"], days=[0.0]).entries[0].norms["thickness"].linf < 1e-14
+    assert compare_runs(tmp_path / "means", days=[0.0]).entries[0].norms["thickness"].linf < 1e-14
 
 
 @dataclass(frozen=True)
@@ -183,29 +184,29 @@ class Stored:
 def test_stored_reference_is_chosen_where_it_fits(monkeypatch: pytest.MonkeyPatch) -> None:
     both = [Path("mountain-162"), Path("mountain-642")]
     with_stored(monkeypatch, Stored(Williamson5()))
-    comparison = compare(both)
+    comparison = compare_runs(*both)
     assert comparison.solution.name == "spectral T42"
     assert comparison.days == (0.5,)
     assert all(0.005 < entry.norms["thickness"].l2 < 0.02 for entry in comparison.entries)
     assert "normal_velocity" in comparison.entries[0].norms
     assert comparison_record(comparison)["uncertainty"] == {"0.5": {"thickness": 1e-5}}
-    assert isinstance(compare(both, days=[1.0]).solution, RunSolution)
+    assert isinstance(compare_runs(*both, days=[1.0]).solution, RunSolution)
     with_stored(monkeypatch, Stored(Williamson5(wind_speed=10.0)))
-    assert isinstance(compare(both).solution, RunSolution)
+    assert isinstance(compare_runs(*both).solution, RunSolution)
     with_stored(monkeypatch, None)
-    assert isinstance(compare(both).solution, RunSolution)
-    assert compare([Path("steady-162")]).solution.name == "exact solution"
+    assert isinstance(compare_runs(*both).solution, RunSolution)
+    assert compare_runs(Path("steady-162")).solution.name == "exact solution"
 
 
 def test_stored_reference_knows_all_days_that_are_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
     both = [Path("mountain-162"), Path("mountain-642")]
     with_stored(monkeypatch, Stored(Williamson5()))
-    assert isinstance(compare(both, days=[0.5, 1.0]).solution, RunSolution)
-    assert compare(both, days=[0.5, 0.0]).days == (0.0, 0.5)
+    assert isinstance(compare_runs(*both, days=[0.5, 1.0]).solution, RunSolution)
+    assert compare_runs(*both, days=[0.5, 0.0]).days == (0.0, 0.5)
     with pytest.raises(InputError, match=r"nothing to compare mountain-162 with: .* is known on day 0\.5, 1;"):
-        compare(both[:1], days=[0.5, 1.0])
+        compare_runs(*both[:1], days=[0.5, 1.0])
     with_stored(monkeypatch, Stored(Williamson5(), days=(0.0, 0.5)))
-    comparison = compare(both, days=[0.5, 0.0])
+    comparison = compare_runs(*both, days=[0.5, 0.0])
     assert (comparison.solution.name, comparison.days) == ("spectral T42", (0.0, 0.5))
 
 
@@ -224,15 +225,15 @@ def test_reference_file_must_fit(monkeypatch: pytest.MonkeyPatch, tmp_path: Path
     file = tmp_path / "reference.nc"
     file.touch()
     with_stored(monkeypatch, Stored(Williamson5()))
-    assert compare([Path("mountain-162")], str(file)).days == (0.5,)
+    assert compare_runs(Path("mountain-162"), reference=str(file)).days == (0.5,)
     with pytest.raises(InputError, match=r"reference\.nc is of case williamson5, but steady-162 of williamson2"):
-        compare([Path("steady-162")], str(file))
+        compare_runs(Path("steady-162"), reference=str(file))
     with_stored(monkeypatch, Stored(Williamson5(mountain_height=1000.0)))
     with pytest.raises(InputError, match=r"mountain_height = 1000\.0, but mountain-162 has 2000\.0"):
-        compare([Path("mountain-162")], str(file))
+        compare_runs(Path("mountain-162"), reference=str(file))
     with_stored(monkeypatch, Stored(Williamson5(), days=(10.0, 15.0)))
     with pytest.raises(InputError, match=r"known on day 10, 15, but the runs have snapshots of day 0\.5, 1 in common"):
-        compare([Path("mountain-162")], str(file))
+        compare_runs(Path("mountain-162"), reference=str(file))
 
 
 def test_without_the_spectral_package(runs: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
@@ -243,16 +244,16 @@ def test_without_the_spectral_package(runs: Path, monkeypatch: pytest.MonkeyPatc
     for name in ("harmonics", "spectral_model", "making", "reference_file"):
         monkeypatch.delitem(sys.modules, f"postprocess.reference.{name}", raising=False)
     with pytest.raises(InputError, match="there is nothing to compare mountain-162 with"):
-        compare([Path("mountain-162")])
+        compare_runs(Path("mountain-162"))
     (tmp_path / "reference.nc").touch()
     (tmp_path / "williamson5.nc").touch()
     monkeypatch.setattr(stored_references, "FOLDER", tmp_path)
     for reference in (str(tmp_path / "reference.nc"), "auto"):
         with pytest.raises(InputError, match=r"need the package ducc0; install .*trisk\[reference\]"):
-            compare([Path("mountain-162")], reference)
+            compare_runs(Path("mountain-162"), reference=reference)
     with pytest.warns(UserWarning, match="the first run is the reference instead"):
-        assert isinstance(compare([Path("mountain-162"), Path("mountain-642")]).solution, RunSolution)
-    assert compare([Path("steady-162")]).solution.name == "exact solution"
+        assert isinstance(compare_runs(Path("mountain-162"), Path("mountain-642")).solution, RunSolution)
+    assert compare_runs(Path("steady-162")).solution.name == "exact solution"
 
 
 def test_refusals(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
@@ -282,14 +283,16 @@ def test_refusals(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
         ([mountain], "auto", (-1.0,), "mountain-162 has no snapshot of day -1"),
     ):
         with pytest.raises(InputError, match=words):
-            compare(directories, reference, days)
+            compare_runs(*directories, reference=reference, days=days)
 
 
 def test_own_cases_are_compared_with_each_other(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
     for name, time_step in (("one", 1200.0), ("two", 600.0)):
         write_run(tmp_path / name, small_mesh, OwnCase(), days=0.5, time_step=time_step)
     with pytest.warns(UserWarning, match="of-my-own, .* without subtracting a background depth") as warned:
-        entry = compare([tmp_path / "one", tmp_path / "two"], str(tmp_path / "one"), [0.0, 0.5]).entries[-1]
+        entry = compare_runs(
+            tmp_path / "one", tmp_path / "two", reference=str(tmp_path / "one"), days=[0.0, 0.5]
+        ).entries[-1]
     assert len(warned) == 1
     assert 0.0 < entry.norms["thickness"].l2 < 1e-4
 
@@ -332,7 +335,7 @@ def test_exact_solution_that_fails_is_told_in_a_sentence() -> None:
 
 
 def test_record_is_json_without_nan(runs: Path) -> None:
-    comparison = compare([Path("steady-162")])
+    comparison = compare_runs(Path("steady-162"))
     entry = comparison.entries[0]
     entry.norms["velocity"] = Norms(np.nan, np.nan, np.nan)  # as of a flow at rest
     record = json.loads(json.dumps(comparison_record(comparison), allow_nan=False))
@@ -346,7 +349,7 @@ def test_maps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr(compare_maps, "ROWS", 45)
     monkeypatch.setattr(compare_maps, "COLUMNS", 90)
     monkeypatch.setattr(compare_maps, "DOTS_PER_INCH", 40)
-    comparison = compare([Path("mountain-162"), Path("mountain-642")], "mountain-162")
+    comparison = compare_runs(Path("mountain-162"), Path("mountain-642"), reference="mountain-162")
     paths = compare_maps.write_maps(comparison, tmp_path / "maps")
     assert {path.name for path in paths} == {
         f"compare_{name}{kind}_day1.png"
@@ -373,3 +376,29 @@ def test_maps_have_one_scale_and_say_what_it_is() -> None:
 def test_long_names_of_runs_keep_their_last_two_parts() -> None:
     assert _short(Path("runs/tc5")) == "runs/tc5"
     assert _short(Path("/a/long/way/to/the/folder/of/many/studies/runs/tc5")) == ".../runs/tc5"
+
+
+def test_runs_that_are_open_and_the_table_in_print() -> None:
+    coarse, fine = open_run("mountain-162"), open_run("mountain-642")
+    comparison = compare_runs(coarse, fine, reference=fine, days=[0.5])
+    assert comparison.entries[0].run is coarse
+    of_folders = compare_runs("mountain-162", fine, reference="mountain-642", days=[0.5])
+    assert of_folders.entries[0].norms == comparison.entries[0].norms
+    title, header, *rows = repr(comparison).splitlines()
+    assert title == "williamson5: error norms, reference: mountain-642, 642 cells"
+    assert header.split() == ["day", "run", "cells", "field", "l1", "l2", "linf"]
+    norms = comparison.entries[0].norms
+    assert [row.split()[:4] for row in rows] == [["0.5", "mountain-162", "162", name] for name in norms]
+    assert rows[0].split()[4:] == [f"{value:.2e}" for value in vars(norms["thickness"]).values()]
+
+
+def test_open_runs_are_checked_as_folders_are(tmp_path: Path) -> None:
+    shutil.copytree("mountain-162", tmp_path / "mixed")
+    shutil.copy("mountain-642/mesh.nc", tmp_path / "mixed" / "mesh.nc")
+    with pytest.raises(InputError, match=r"has 162 values of thickness, but mesh\.nc beside it needs 642"):
+        compare_runs(open_run(tmp_path / "mixed"), "mountain-642")
+
+
+def test_nothing_to_compare() -> None:
+    with pytest.raises(InputError, match="there is nothing to compare; name a run"):
+        compare_runs()

@@ -3,11 +3,12 @@ import sys
 from pathlib import Path
 
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from cases import Williamson5
 from mesh import VoronoiMesh
-from postprocess.figures.plots import conservation_figure, field_figure, mesh_figure, plot_run
+from postprocess.figures.plots import draw_conservation, field_figure, mesh_figure, plot_run
 from postprocess.runs.reading import read_run
 from swe import Simulation
 from swe.errors import InputError
@@ -33,7 +34,9 @@ def test_figures_have_labels_and_units(run_directory: Path) -> None:
     maps = field_figure(run.mesh, run.mesh.area_cell, "Title", "area (m²)")
     assert [axes.get_xlabel() for axes in maps.axes][-1] == "area (m²)"
     assert maps.get_suptitle() == "Title"
-    conservation = conservation_figure(run.series, "a run").axes[0]
+    panel = Figure().subplots()
+    conservation = draw_conservation(panel, run.series, "a run")
+    assert conservation is panel
     assert conservation.get_xlabel() == "time (days)"
     assert conservation.get_yscale() == "log"
     assert len(conservation.get_lines()) == 5

@@ -7,7 +7,7 @@ import pytest
 
 from cases import Williamson2
 from mesh import MeshError, read_mesh, scvt_mesh, write_mesh
-from postprocess.compare.comparison import compare
+from postprocess.compare.comparison import compare_runs
 from postprocess.figures.spectra_figure import write_spectra_of
 from postprocess.reference.reference_file import read_reference, write_reference
 from postprocess.reference.stored_references import stored_path
@@ -24,8 +24,8 @@ def test_text_serves_as_path(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
             0.25, progress=False
         )
     assert read_run("one").directory == Path("one")
-    assert compare(["one", "other"], "one").entries[1].norms["thickness"].l2 > 0.0
-    assert compare(["other"], Path("one")).entries[0].norms["thickness"].l2 > 0.0
+    assert compare_runs("one", "other", reference="one").entries[1].norms["thickness"].l2 > 0.0
+    assert compare_runs("other", reference=Path("one")).entries[0].norms["thickness"].l2 > 0.0
     written = write_spectra_of([read_run("one")], (), "spectra")
     assert all(path.is_file() for path in written)
     stored = stored_path("williamson5")

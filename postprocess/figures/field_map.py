@@ -1,0 +1,123 @@
+"""A map of any field of a run or a mesh, centred and zoomed anywhere: what `trisk.plot_field` draws."""
+
+from typing import Literal, get_args
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import Collection
+from matplotlib.colors import CenteredNorm, Colormap, Normalize
+
+from mesh.arrays import Array
+from mesh.safe_files import AnyPath
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.figures.maps import draw_mollweide, draw_orthographic
+from postprocess.figures.shown_fields import ShownField, given_field, mesh_field, snapshot_field
+from postprocess.figures.windows import Window, draw_cylindrical, draw_orthographic_window
+from postprocess.runs.reading import Run, open_run
+from swe.errors import InputError
+
+Projection = Literal["mollweide", "orthographic", "cylindrical"]
+
+LARGEST = {"mollweide": (360.0, 180.0), "orthographic": (180.0, 180.0), "cylindrical": (360.0, 180.0)}
+"""Width and height, degrees, of what a map shows without an extent."""
+
+
+def plot_field(
+    where: Run | VoronoiMesh | AnyPath,
+    field: str | Array,
+    ax: Axes | None = None,
+    *,
+    time: int = -1,
+    centre: tuple[float, float] = (0.0, 0.0),
+    extent: float | tuple[float, float] | None = None,
+    projection: Projection | None = None,
+    cmap: str | Colormap | None = None,
+    norm: Normalize | None = None,
+    label: str | None = None,
+    colour_bar: bool = True,
+) -> Axes:
+    """Draw a field of a run, or of a mesh, on a map; return the Axes that it is drawn on.
+
+    `where` is a run, its directory or a mesh. `field` is the name of a snapshot's field or of an array of the mesh, or
+    values (n,) for each cell, edge or vertex; those at vertices are drawn on triangles, those at edges on the
+    quadrilaterals round them. `time` numbers the snapshots, from the end where it is negative.
+
+    `centre` is the longitude and latitude, degrees, in the middle of the map, and `extent` the size of the window round
+    it, degrees: one number, or width and height. `projection` is "mollweide", the globe on an equal-area map;
+    "orthographic", as seen from above `centre`; or "cylindrical", with longitude and latitude as axes. By default it is
+    the first of the globe, and the second with an `extent` or off the equator.
+
+    Colours run over the values on the map, symmetrically where these have both signs, unless `cmap` or `norm` say
+    otherwise. The colour bar has the name and the units of the field, or `label`, and takes its room from `ax`; without
+    `ax`, the map is on a new figure of pyplot. Raises `InputError` where there is no such field, snapshot or window.
+    """
+    shown = _shown_field(where, field, time)
+    chosen = projection or ("mollweide" if extent is None and centre[1] == 0.0 else "orthographic")
+    window = _window(chosen, centre, extent)
+    if ax is None:
+        import matplotlib.pyplot as plt  # only here: drawing on Axes of the caller's needs no backend
+
+        _, ax = plt.subplots(layout="constrained")
+    _draw(ax, shown, chosen, window, whole=extent is None)
+    drawn = ax.collections[-1]
+    _set_colours(drawn, cmap, norm)
+    if shown.title:
+        ax.set_title(shown.title)
+    if colour_bar:
+        figure = ax.get_figure()
+        assert figure is not None
+        figure.colorbar(drawn, ax=ax, shrink=0.8, label=shown.label if label is None else label)
+    return ax
+
+
+def _shown_field(where: Run | VoronoiMesh | AnyPath, field: str | Array, time: int) -> ShownField:
+    if isinstance(where, VoronoiMesh):
+        return mesh_field(where, field) if isinstance(field, str) else given_field(where, field)
+    run = where if isinstance(where, Run) else open_run(where)
+    return snapshot_field(run, field, time) if isinstance(field, str) else given_field(run.mesh, field)
+
+
+def _window(projection: Projection, centre: tuple[float, float], extent: float | tuple[float, float] | None) -> Window:
+    """What a map shows; raise `InputError` where there is no such map."""
+    if projection not in get_args(Projection):
+        known = ", ".join(get_args(Projection))
+        raise InputError(f"there is no projection named '{projection}'; choose one of {known}")
+    longitude, latitude = centre
+    if not (np.isfinite(longitude) and abs(latitude) <= 90.0):
+        raise InputError(f"a map has no centre ({longitude:g}, {latitude:g}); give longitude and latitude in degrees")
+    if projection == "mollweide" and (extent is not None or latitude != 0.0):
+        raise InputError(
+            "a Mollweide map shows the whole globe with the equator in the middle; for an extent or another latitude "
+            "choose the projection orthographic or cylindrical"
+        )
+    largest = LARGEST[projection]
+    if extent is None:
+        return Window(longitude, latitude if projection == "orthographic" else 0.0, *largest)
+    width, height = (extent, extent) if isinstance(extent, float | int) else extent
+    if not (0.0 < width <= largest[0] and 0.0 < height <= largest[1]):
+        raise InputError(
+            f"a window of {width:g} x {height:g} degrees does not fit on the {projection} map; it may have up to "
+            f"{largest[0]:g} x {largest[1]:g}"
+        )
+    return Window(longitude, latitude, width, height)
+
+
+def _draw(axes: Axes, shown: ShownField, projection: Projection, window: Window, whole: bool) -> None:
+    if projection == "cylindrical":
+        draw_cylindrical(axes, shown.mesh, shown.values, {}, window)
+    elif projection == "mollweide":
+        draw_mollweide(axes, shown.mesh, shown.values, {}, window.centre[0])
+    elif whole:
+        draw_orthographic(axes, shown.mesh, shown.values, {}, *window.centre)
+    else:
+        draw_orthographic_window(axes, shown.mesh, shown.values, {}, window)
+
+
+def _set_colours(drawn: Collection, cmap: str | Colormap | None, norm: Normalize | None) -> None:
+    """Colours over the finite values drawn, from blue to red with white at zero where these have both signs."""
+    values = np.asarray(drawn.get_array(), dtype=float)
+    values = values[np.isfinite(values)]
+    lowest, highest = (values.min(), values.max()) if len(values) else (0.0, 1.0)
+    symmetric = lowest < 0.0 < highest
+    usual = CenteredNorm(halfrange=max(-lowest, highest)) if symmetric else Normalize(lowest, highest)
+    drawn.set(cmap=cmap or ("RdBu_r" if symmetric else "viridis"), norm=norm or usual)

@@ -1,0 +1,101 @@
+"""Fields by name, as maps show them: values on a mesh, their label and their title."""
+
+import re
+from dataclasses import dataclass
+
+import netCDF4
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.conventions import MESH_VARIABLES, MeshVariable
+from mesh.safe_files import dataset
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.figures.patches import require_place
+from postprocess.runs.reading import Run
+from swe.errors import InputError
+from swe.output.files import HISTORY_FILE
+
+DIMENSIONS = ("nCells", "nEdges", "nVertices")
+"""Of fields in history files that a map shows."""
+
+SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+
+MESH_FIELDS = {
+    variable.name: variable
+    for variable in MESH_VARIABLES
+    if variable.dimensions in (("n_cells",), ("n_edges",), ("n_vertices",))
+}
+"""Arrays of a mesh that a map shows."""
+
+
+@dataclass(frozen=True, eq=False)
+class ShownField:
+    """Values (n,) for each cell, edge or vertex of a mesh, their label on a colour bar and the title of their map."""
+
+    mesh: VoronoiMesh
+    values: Array
+    label: str
+    title: str = ""
+
+
+def snapshot_field(run: Run, name: str, time: int) -> ShownField:
+    """A field of the snapshot of number `time`, from the end where that is negative, or of the run's mesh.
+
+    Raises `InputError` where there is no such field or snapshot.
+    """
+    path = run.directory / HISTORY_FILE
+    try:
+        with dataset(path) as file:
+            file.set_auto_mask(False)
+            names = [each for each, variable in file.variables.items() if _is_field(variable)]
+            if name not in names:
+                return mesh_field(run.mesh, name, names)
+            if not -len(run.days) <= time < len(run.days):
+                raise InputError(f"{path} has {len(run.days)} snapshots, and none of number {time}; count from 0")
+            variable = file[name]
+            values = np.asarray(variable[time] if variable.dimensions[0] == "Time" else variable[:], dtype=float)
+            label = _label(str(getattr(variable, "long_name", name)), str(getattr(variable, "units", "")))
+    except (OSError, RuntimeError) as error:
+        raise InputError(f"{path} cannot be read ({error}); name a directory that a run wrote") from error
+    return ShownField(run.mesh, values, label, f"{run.case}, {run.cells} cells, day {run.days[time]:g}")
+
+
+def mesh_field(mesh: VoronoiMesh, name: str, others: list[str] | None = None) -> ShownField:
+    """An array of a mesh; raise `InputError`, which names the `others` too, where there is none of this name."""
+    if name not in MESH_FIELDS:
+        known = ", ".join([*(others or ()), *MESH_FIELDS])
+        raise InputError(f"there is no field named '{name}'; choose among {known}")
+    variable = MESH_FIELDS[name]
+    units = "" if _is_length(variable) and mesh.sphere_radius == 1.0 else variable.units
+    return ShownField(mesh, np.asarray(getattr(mesh, name), dtype=float), _label(variable.long_name, units))
+
+
+def given_field(mesh: VoronoiMesh, values: object) -> ShownField:
+    """Values from the caller, labelled by their attributes where they have any, as arrays of xarray do.
+
+    Raises `InputError` unless there is one for each cell, edge or vertex.
+    """
+    array = np.asarray(values, dtype=float)
+    require_place(mesh, array)
+    attributes = getattr(values, "attrs", {})
+    name = str(attributes.get("long_name") or getattr(values, "name", None) or "")
+    return ShownField(mesh, array, _label(name, str(attributes.get("units", ""))))
+
+
+def _is_field(variable: netCDF4.Variable) -> bool:
+    of_place = variable.dimensions[-1:] in [(dimension,) for dimension in DIMENSIONS]
+    return of_place and variable.dimensions[:-1] in ((), ("Time",)) and variable.dtype.kind == "f"
+
+
+def _is_length(variable: MeshVariable) -> bool:
+    """Whether values are lengths or areas, which have no units on the unit sphere."""
+    return variable.units in ("m", "m2")
+
+
+def _label(name: str, units: str) -> str:
+    """What the name says before its first comma, and units in print, as in "kinetic energy (m² s⁻²)"."""
+    name, *_ = name.split(",")
+    if units in ("", "1"):
+        return name
+    printed = re.sub(r"(?<=[A-Za-z])-?\d+", lambda power: power.group().translate(SUPERSCRIPTS), units)
+    return f"{name} ({printed})".strip()
