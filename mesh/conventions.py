@@ -58,11 +58,12 @@ class MeshVariable:
 
 def _coordinates(place: str, dimension: str) -> list[MeshVariable]:
     """The five coordinate arrays of one kind of entity."""
+    plural = "vertices" if place == "vertex" else f"{place}s"
     angles = [
-        MeshVariable(f"{short}_{place}", (dimension,), "rad", f"{full} of {place}s", required=False)
+        MeshVariable(f"{short}_{place}", (dimension,), "rad", f"{full} of {plural}", required=False)
         for short, full in (("lat", "latitude"), ("lon", "longitude"))
     ]
-    cartesian = [MeshVariable(f"{axis}_{place}", (dimension,), "m", f"Cartesian {axis} of {place}s") for axis in "xyz"]
+    cartesian = [MeshVariable(f"{axis}_{place}", (dimension,), "m", f"Cartesian {axis} of {plural}") for axis in "xyz"]
     return angles + cartesian
 
 

@@ -11,7 +11,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.conventions import DIMENSIONS, MESH_VARIABLES, dimension_sizes
+from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
 from mesh.density.record import read_generation, write_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
@@ -21,6 +21,10 @@ from mesh.safe_files import AnyPath, dataset, written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 
 PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}
+STANDARD_NAMES = {"lon": "longitude", "lat": "latitude"}
+
+SINGLE_DIMENSIONS = ("nVertLevels", "nTracers")
+"""Of length 1: VTK's reader looks for the first, MPAS's shallow-water core for both. No array of a mesh has them."""
 
 FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
     "netcdf4": "NETCDF4",
@@ -87,6 +91,8 @@ def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozen
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
         file.createDimension(DIMENSIONS[name], size)
+    for name in SINGLE_DIMENSIONS:
+        file.createDimension(name, 1)
     for place, dimension in PLACES.items():
         identifier = file.createVariable(f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],))
         identifier.long_name = f"number of each {place}"
@@ -96,9 +102,18 @@ def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozen
             continue
         dimensions = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
         target = file.createVariable(variable.file_name, "i4" if variable.integer else "f8", dimensions)
-        target.setncatts({"units": variable.units, "long_name": variable.long_name})
+        target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
         values = getattr(mesh, variable.name)
         target[:] = values + 1 if variable.is_index else values
+
+
+def _coordinates(variable: MeshVariable) -> dict[str, str]:
+    """Attributes by which readers of the CF conventions find the longitude and the latitude of an array's values."""
+    kind, *_ = variable.name.split("_")
+    if kind in STANDARD_NAMES:
+        return {"standard_name": STANDARD_NAMES[kind]}
+    place = next(place for place, dimension in PLACES.items() if dimension == variable.dimensions[0])
+    return {"coordinates": " ".join(BY_NAME[f"{angle}_{place}"].file_name for angle in ("lon", "lat"))}
 
 
 def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:

@@ -132,7 +132,7 @@ def test_dimensions_and_attributes(paths: dict[float, Path]) -> None:
             sizes = {name: len(dimension) for name, dimension in found.dimensions.items() if name != "Time"}
             assert sizes == {
                 **{"nCells": 162, "nEdges": 480, "nVertices": 320, "maxEdges": 6, "maxEdges2": 12},
-                **{"TWO": 2, "vertexDegree": 3},
+                **{"TWO": 2, "vertexDegree": 3, "nVertLevels": 1, "nTracers": 1},
             }
             assert found.sphere_radius == radius
             assert (found.on_a_sphere, found.is_periodic, found.mesh_spec) == ("YES", "NO", "1.0")
@@ -141,6 +141,16 @@ def test_dimensions_and_attributes(paths: dict[float, Path]) -> None:
             assert found.density_name == "uniform"
             for place, count in (("Cell", 162), ("Edge", 480), ("Vertex", 320)):
                 np.testing.assert_array_equal(found[f"indexTo{place}ID"][:], np.arange(1, count + 1))
+
+
+def test_values_name_their_coordinates(paths: dict[float, Path]) -> None:
+    with netCDF4.Dataset(paths[1.0]) as found:
+        for name in VARIABLES:
+            if name.startswith(("lon", "lat")):
+                assert found[name].standard_name == {"lon": "longitude", "lat": "latitude"}[name[:3]]
+            else:
+                place = {"nCells": "Cell", "nEdges": "Edge", "nVertices": "Vertex"}[found[name].dimensions[0]]
+                assert found[name].coordinates == f"lon{place} lat{place}"
 
 
 @pytest.mark.parametrize("place", ["Cell", "Edge", "Vertex"])

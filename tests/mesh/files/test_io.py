@@ -30,9 +30,9 @@ def copy_as(source: Path, target: Path, file_format: str, **changes: object) -> 
             if name not in drop:  # type: ignore[operator]
                 new.createVariable(name, variable.dtype, variable.dimensions)[:] = variable[:]
         if changes.get("add"):
-            new.createDimension("nVertLevels", 3)
-            new.createVariable("zMid", "f4", ("nVertLevels",))[:] = 1.0
-            new.createVariable("xtime", "S1", ("nVertLevels",))
+            new.createDimension("nSoilLevels", 3)
+            new.createVariable("zMid", "f4", ("nSoilLevels",))[:] = 1.0
+            new.createVariable("xtime", "S1", ("nSoilLevels",))
     return target
 
 
@@ -48,7 +48,8 @@ def test_round_trip_is_exact_and_silent(icosahedral_mesh: VoronoiMesh, mesh_file
 
 def test_file_has_what_mpas_readers_expect(mesh_file: Path) -> None:
     with netCDF4.Dataset(mesh_file) as file:
-        assert set(file.dimensions) == {*DIMENSIONS.values(), "Time"}
+        assert set(file.dimensions) == {*DIMENSIONS.values(), "Time", "nVertLevels", "nTracers"}
+        assert len(file.dimensions["nVertLevels"]) == len(file.dimensions["nTracers"]) == 1
         assert file.dimensions["Time"].isunlimited()
         assert len(file.dimensions["Time"]) == 0
         assert {variable.file_name for variable in MESH_VARIABLES} < set(file.variables)
