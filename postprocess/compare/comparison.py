@@ -61,9 +61,9 @@ class Entry:
 
 @dataclass(frozen=True, repr=False)
 class Comparison:
-    """Entries of all runs on all days, day by day, and the solution that they are compared with.
+    """Entries of all runs, day by day, and the solution that they are compared with.
 
-    In print it is a table of the norms.
+    Its `repr` is a table of the norms.
     """
 
     solution: Solution
@@ -90,11 +90,11 @@ class Comparison:
 
 
 def compare_runs(*runs: Run | AnyPath, reference: Run | AnyPath = "auto", days: Sequence[float] = ()) -> Comparison:
-    """Compare runs, or those in directories, on `days`, by default on the last that all and the reference have.
+    """Compare runs, open or named by their directories, on `days`; by default on the last day that all of them have.
 
     `reference` is a run, its directory, "auto", "exact" or a reference file: see
-    `postprocess.compare.solutions.choose_solution`. Raises `InputError` where the runs are not of one case, one radius
-    and the same parameters, where a day is missing or where there is nothing to compare with.
+    `postprocess.compare.solutions.choose_solution`. Raises `InputError` if the runs differ in case, radius
+    or parameters, if a snapshot is missing, or if there is nothing to compare with.
     """
     if not runs:
         raise InputError("there is nothing to compare; name a run")
@@ -122,7 +122,7 @@ def _comparison(runs: Sequence[Run], reference: str, days: Sequence[float]) -> C
 
 
 def fields_of(run: Run, day: float) -> Fields:
-    """Fields of a run as it wrote them."""
+    """Fields that a run wrote."""
     fields = run.snapshot(day).fields
     velocity = fields["velocity_zonal"], fields["velocity_meridional"]
     return Fields(fields["thickness"], velocity, fields["relative_vorticity"], fields["normal_velocity"])
@@ -154,12 +154,12 @@ def is_reference(run: Run, solution: Solution) -> bool:
 
 
 def _background_depth(run: Run) -> float:
-    """Depth that is no signal in the thickness of `run`; zero, with a warning, where its case is not found again."""
+    """Constant depth subtracted from the thickness of `run`; zero, with a warning, if its case cannot be found."""
     case = case_of(run)
     if case is not None:
         return case.background_depth
     warnings.warn(
-        f"{run.case}, the case of {run.directory}, cannot be made again from its name and parameters, so that norms "
+        f"{run.case}, the case of {run.directory}, cannot be made again from its name and parameters, so norms "
         "of thickness are taken without subtracting a background depth; put its file back if it has one",
         stacklevel=1,
     )
@@ -202,13 +202,13 @@ def _require_same_radius(run: Run, first: Run) -> None:
 
 
 def _common_days(runs: Sequence[Run]) -> list[float]:
-    """Days after the start of which all runs have a snapshot."""
+    """Days after the start on which all runs have a snapshot."""
     days = [float(day) for day in runs[0].days if day > 0.0]
     for run in runs[1:]:
         days = days_of_both(days, run.days)
     if not days:
         of_each = "; ".join(f"{run.directory}: {days_in_words(run.days)}" for run in runs)
-        raise InputError(f"there is no day after the start of which all runs have a snapshot ({of_each}); run them on")
+        raise InputError(f"the runs have no snapshot in common after the start ({of_each}); run them for longer")
     return days
 
 
@@ -219,8 +219,8 @@ def _last_known_day(solution: Solution, days: Sequence[float]) -> float:
     known = days_of_both(sorted(solution.days), days)
     if not known:
         raise InputError(
-            f"{solution.name} is known on day {days_in_words(solution.days)}, but the runs have snapshots of day "
-            f"{days_in_words(days)} in common; make a snapshot of one of the former"
+            f"{solution.name} is known on day {days_in_words(solution.days)}, but the snapshots that all runs have are "
+            f"of day {days_in_words(days)}; run again with a snapshot on one of the former days"
         )
     return known[-1]
 
@@ -231,7 +231,7 @@ def in_scientific_notation(value: float) -> str:
 
 
 def _aligned(rows: Sequence[Sequence[str]]) -> str:
-    """Rows as lines whose columns stand below each other."""
+    """Rows as lines with aligned columns."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     lines = ("  ".join(text.ljust(width) for text, width in zip(row, widths, strict=True)) for row in rows)
     return "\n".join(line.rstrip() for line in lines)

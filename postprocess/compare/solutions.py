@@ -26,18 +26,18 @@ LONGEST_PATH = 40
 
 
 class Solution(Protocol):
-    """Fields at any points (n,), longitudes and latitudes in radians, on some days since the start, or on any."""
+    """Fields at any points (n,), longitude and latitude in radians, on certain days since the start or any day."""
 
     @property
     def name(self) -> str:
-        """What it is, for tables and titles."""
+        """Its name in tables and titles."""
 
     @property
     def days(self) -> Sequence[float] | None:
         """Days on which it is known; None where that is any day."""
 
     def uncertainty(self, day: float) -> dict[str, float]:
-        """Relative l2 norms of its own error by field, as far as they are known."""
+        """Relative l2 norms of its own error, by field, where known."""
 
     def thickness(self, longitude: Array, latitude: Array, day: float) -> Array:
         """Thickness of the fluid, m."""
@@ -59,7 +59,7 @@ class ExactSolution:
         self.case = case
 
     def uncertainty(self, day: float) -> dict[str, float]:
-        """Nothing: there is no error."""
+        """Empty: it has no error."""
         return {}
 
     def thickness(self, longitude: Array, latitude: Array, day: float) -> Array:
@@ -76,7 +76,7 @@ class ExactSolution:
 
 
 class RunSolution:
-    """A run, remapped from its mesh; on the mesh itself, its very values.
+    """A run, remapped from its mesh; on the mesh itself, its values unchanged.
 
     Maps to the same arrays of points are made once. The velocity is the one reconstructed at cells.
     """
@@ -88,7 +88,7 @@ class RunSolution:
         self._maps: dict[tuple[str, int, int], Remap] = {}
 
     def uncertainty(self, day: float) -> dict[str, float]:
-        """Nothing: it is not known."""
+        """Empty: its error is not known."""
         return {}
 
     def thickness(self, longitude: Array, latitude: Array, day: float) -> Array:
@@ -106,7 +106,7 @@ class RunSolution:
 
     def from_cells(self, longitude: Array, latitude: Array) -> Remap:
         """Map from the cell centres of the run's mesh to points."""
-        # A map keeps the arrays of its points, so that their identity is not given to others.
+        # A map keeps its arrays of points alive, so that no other array can get their identity.
         key = ("cells", id(longitude), id(latitude))
         if key not in self._maps:
             self._maps[key] = remap_cells(self.run.mesh, longitude, latitude)
@@ -121,13 +121,13 @@ class RunSolution:
 
 
 def _short(directory: Path) -> str:
-    """A path as it was given, but for what leads to its last two parts where it is too long for a title."""
+    """A path as given, or its last two parts if it is too long for a title."""
     whole = str(directory)
     return whole if len(whole) <= LONGEST_PATH else str(Path("...", *directory.parts[-2:]))
 
 
 def case_of(run: Run) -> Case | None:
-    """The case of a run with its parameters; None where it is unknown, or its file was moved or changed."""
+    """The case of a run with its parameters; None if it is unknown, or its file was moved or changed."""
     try:
         return find_case(run.case, run.parameters)
     except InputError:
@@ -160,12 +160,12 @@ def choose_solution(wanted: str, runs: Sequence[Run], days: Sequence[float], eve
 def require_same_problem(what: Path, case: str, parameters: Mapping[str, object], run: Run) -> None:
     """Raise `InputError` where the file or directory `what` is not of the case and the parameters of `run`."""
     if case != run.case:
-        raise InputError(f"{what} is of case {case}, but {run.directory} of {run.case}; compare what is of one case")
+        raise InputError(f"{what} is of case {case}, but {run.directory} of {run.case}; compare runs of one case")
     for name in sorted(parameters.keys() & run.parameters.keys()):
         theirs, ours = parameters[name], run.parameters[name]
         if not _same(theirs, ours):
             raise InputError(
-                f"{what} has {name} = {theirs!r}, but {run.directory} has {ours!r}; compare what agrees in this"
+                f"{what} has {name} = {theirs!r}, but {run.directory} has {ours!r}; compare runs with equal parameters"
             )
 
 

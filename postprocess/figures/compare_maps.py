@@ -27,7 +27,7 @@ ROWS, COLUMNS = 360, 720
 
 
 Scale = Literal["range", "from zero", "symmetric"]
-"""Of colours: from the least value to the greatest, from zero for lengths, from blue to red with white at zero."""
+"""Colours from the lowest value to the highest; from zero, for magnitudes; or blue to red with white at zero."""
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from swe.constants import SECONDS_PER_DAY
 SQUARE_METRES_PER_SQUARE_KILOMETRE = 1e6
 DOTS_PER_INCH = 150
 ROUND_OFF_FLOOR = 1e-20
-"""Changes smaller than this are drawn here, for want of a logarithm of zero."""
+"""Smaller changes are drawn at this value, since zero has no logarithm."""
 
 
 def plot_run(run: Run, folder: AnyPath) -> list[Path]:

@@ -21,10 +21,10 @@ LEAST_DAMPING_HOURS = 1e-9
 LEAST_TRUNCATION = 16
 
 MEASURES = ("thickness", "velocity", "vorticity")
-"""What the uncertainty is given of."""
+"""Quantities that have an uncertainty."""
 
 TellPart = Callable[[str, float], None]
-"""Hears what is done and the part of it that is done."""
+"""Receives what is being done and the fraction that is done."""
 
 
 @dataclass(frozen=True, eq=False)

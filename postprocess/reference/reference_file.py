@@ -1,4 +1,4 @@
-"""NetCDF files of reference solutions: harmonics, rounded to a part of their uncertainty, and where they come from."""
+"""NetCDF files of reference solutions: harmonics, rounded to a fraction of their uncertainty, and their origin."""
 
 import json
 from dataclasses import dataclass
@@ -36,11 +36,11 @@ STORED_FIELDS = {
 LARGEST_INTEGER = 2**31 - 1
 
 ROUNDING = 0.1
-"""Root mean square of the error of rounding, as a part of the uncertainty."""
+"""Root-mean-square rounding error as a fraction of the uncertainty."""
 
 
 def stored_reference(case: str) -> Reference | None:
-    """The reference of a case that comes with the package, None if there is none."""
+    """The reference for a case that comes with the package; None if there is none."""
     path = stored_path(case)
     return None if path is None else read_reference(path)
 
@@ -121,7 +121,7 @@ def _write_variable(
 
 
 def read_reference(path: AnyPath) -> Reference:
-    """Read a reference; raise `InputError` where the file is none, or is damaged."""
+    """Read a reference; raise `InputError` if the file is not one, or is damaged."""
     try:
         with dataset(path) as file:
             file.set_auto_mask(False)
@@ -130,10 +130,10 @@ def read_reference(path: AnyPath) -> Reference:
         return reference
     except (OSError, RuntimeError, ValueError, LookupError, AttributeError, TypeError, ArithmeticError) as error:
         raise InputError(
-            f"{path} is no readable reference solution ({error}); make one with 'trisk reference'"
+            f"{path} is not a readable reference solution ({error}); make one with 'trisk reference'"
         ) from error
     except MemoryError as error:
-        raise InputError(f"{path} claims to be larger than the memory; make it anew with 'trisk reference'") from error
+        raise InputError(f"{path} claims to be larger than the memory; make it again with 'trisk reference'") from error
 
 
 def _reference_of(file: netCDF4.Dataset) -> Reference:
@@ -150,7 +150,7 @@ def _reference_of(file: netCDF4.Dataset) -> Reference:
 
 
 def _require_sound(reference: Reference) -> None:
-    """Raise `ValueError` where arrays do not fit each other or hold what no reference does."""
+    """Raise `ValueError` if arrays do not fit together or hold impossible values."""
     n_days, n_coarser = len(reference.days), len(reference.truncations) - 1
     n_coefficients = reference.coefficients.shape[-1]
     resolved = truncation_of(reference.coefficients)

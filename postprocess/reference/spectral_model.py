@@ -16,7 +16,7 @@ HYPERDIFFUSION_POWER = 4
 """Power of the Laplacian: del^8."""
 
 TOPOGRAPHY_OVERSAMPLING = 4
-"""The mountain has kinks: its harmonics are taken on a grid so much finer, or they would be aliased."""
+"""The mountain has kinks: its harmonics are taken on a grid finer by this factor, to avoid aliasing."""
 
 SECONDS_PER_HOUR = 3600.0
 

@@ -1,15 +1,15 @@
-"""Which cases have a spectral reference that comes with the package; asking needs no optional package."""
+"""Which cases have a spectral reference that comes with the package; this needs no optional package."""
 
 from pathlib import Path
 
 from cases.registry import CASES
 
 FOLDER = Path(__file__).parent / "stored"
-"""Where the references that come with the package are."""
+"""Folder of the references that come with the package."""
 
 
 def stored_path(case: str) -> Path | None:
-    """The file of the reference of the case of that name; None for a case of a user and where there is no file."""
+    """The reference file of the case of that name; None for a user's own case or if there is no file."""
     if case not in CASES:
         return None
     path = FOLDER / f"{case}.nc"

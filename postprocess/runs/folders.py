@@ -1,4 +1,4 @@
-"""Folders that results are written to, tried before the work that fills them."""
+"""Folders for results, checked before the work that fills them."""
 
 import os
 from pathlib import Path
@@ -8,18 +8,18 @@ from swe.errors import InputError
 
 
 def require_possible_folder(path: AnyPath) -> None:
-    """Raise `InputError` where `path` is no folder that can be written to, and none can be made there."""
+    """Raise `InputError` unless `path` is a writable folder, or could become one."""
     path = Path(path)
     # os.path.exists is false, rather than an error, where a folder on the way cannot be searched.
     existing = next(each for each in (path, *path.absolute().parents) if os.path.exists(each))
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise InputError(f"{path} cannot be a folder of results: {existing} is no folder that one can write to")
+        raise InputError(f"results cannot be written to {path}: {existing} is not a writable folder; choose another place")
 
 
 def prepared_folder(path: AnyPath) -> Path:
-    """Make the folder `path`, and those above it, where it is missing; return it.
+    """Make the folder `path` and its parents unless they exist; return it.
 
-    Raises `InputError` where it is a file or cannot be made or written to.
+    Raises `InputError` if it is a file, or cannot be made or written to.
     """
     path = Path(path)
     require_possible_folder(path)

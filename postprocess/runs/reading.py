@@ -1,4 +1,4 @@
-"""Read what a run left in its directory."""
+"""Read a run directory."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -25,10 +25,10 @@ if TYPE_CHECKING:
     import xarray
 
 DAY_TOLERANCE = 1e-6
-"""Snapshots less than this apart, in days, are of the same day."""
+"""Snapshots closer together than this, in days, belong to the same day."""
 
 DAYS_TOLD = 8
-"""Errors name all days of a run up to this number of them."""
+"""Error messages list up to this many days."""
 
 
 class _Fields(dict[str, Array]):
@@ -46,7 +46,7 @@ class _Fields(dict[str, Array]):
 
 @dataclass(frozen=True)
 class Snapshot:
-    """Fields by name at one day since the start."""
+    """Fields by name, on one day since the start."""
 
     day: float
     fields: dict[str, Array]
@@ -54,13 +54,13 @@ class Snapshot:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Run:
-    """A run directory: what its record says, and its files, each read when it is asked for.
+    """A run directory: what its record says, and its files, each read on first use.
 
-    `case` is the name of the case and `parameters` are what it was run with; `sampling` says what the initial thickness
-    was, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` their number. `days` are those
-    of the snapshots, on a mesh of `cells` cells. `record` is all that `run.json` holds.
+    `case` is the name of the case and `parameters` are its parameters; `sampling` says how the initial thickness was
+    sampled, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` the number of steps. `days`
+    lists the days of the snapshots; the mesh has `cells` cells. `record` is the content of `run.json`.
 
-    `data` and `diagnostics` keep their files open until the run is closed, by `close` or at the end of a `with`.
+    `data` and `diagnostics` keep their files open until `close`, or the end of a `with` block.
     """
 
     directory: Path
@@ -91,7 +91,7 @@ class Run:
         self.close()
 
     def close(self) -> None:
-        """Close the files of `data` and `diagnostics`; asked for again, they are opened again."""
+        """Close the files of `data` and `diagnostics`; the next use opens them again."""
         for name in ("data", "diagnostics"):
             opened = vars(self).pop(name, None)
             if opened is not None:
@@ -110,21 +110,21 @@ class Run:
 
     @cached_property
     def data(self) -> "xarray.Dataset":
-        """Snapshots and geometry, as in `history.nc`; values are read when they are needed. Needs xarray."""
+        """Snapshots and geometry from `history.nc`, read lazily. Needs xarray."""
         return opened_by_xarray(self.directory / HISTORY_FILE)
 
     @cached_property
     def diagnostics(self) -> "xarray.Dataset":
-        """Time series of what is conserved and of what limits the step, as in `diagnostics.nc`. Needs xarray."""
+        """Time series from `diagnostics.nc`: invariants, their changes and budgets, Courant number. Needs xarray."""
         return opened_by_xarray(self.directory / DIAGNOSTICS_FILE)
 
     def snapshot(self, day: float) -> Snapshot:
-        """The snapshot of `day`; raise `InputError` where there is none."""
+        """The snapshot of `day`; raise `InputError` if there is none."""
         self.require_snapshot(day)
         return self._read(int(np.argmin(np.abs(self.days - day))))
 
     def require_snapshot(self, day: float) -> None:
-        """Raise `InputError` where there is no snapshot of `day`."""
+        """Raise `InputError` if there is no snapshot of `day`."""
         if not days_of_both([day], self.days):
             raise InputError(
                 f"{self.directory} has no snapshot of day {day:g}; its days are {days_in_words(self.days)}"
@@ -141,17 +141,17 @@ class Run:
         snapshot = Snapshot(float(self.days[row]), _Fields(self.directory, present))
         wrong = [name for name, values in present.items() if not np.isfinite(values).all()]
         if wrong or ("thickness" in present and not present["thickness"].min(initial=np.inf) > 0.0):
+            what = f"non-finite {wrong[0]}" if wrong else "non-positive thickness"
             raise InputError(
-                f"{self.directory / HISTORY_FILE} has no sound {wrong[0] if wrong else 'thickness'} on day "
-                f"{snapshot.day:g}; it is damaged, run it again"
+                f"{self.directory / HISTORY_FILE} has {what} on day {snapshot.day:g}; it is damaged, run it again"
             )
         return snapshot
 
 
 def open_run(directory: AnyPath) -> Run:
-    """Open a run directory, of a run that has ended or goes on; raise `InputError` where it holds no run.
+    """Open the directory of a run that has finished or is still going; raise `InputError` if it holds no run.
 
-    Mesh, fields and diagnostics are read, and checked, when they are asked for.
+    Mesh, fields and diagnostics are read and checked on first use.
     """
     directory = Path(directory)
     with _readable(directory):
@@ -183,9 +183,9 @@ def read_run(directory: AnyPath) -> Run:
 
 
 def checked(run: Run) -> Run:
-    """Read mesh, diagnostics and last snapshot of a run; return it.
+    """Read the mesh, the diagnostics and the last snapshot of a run, and return the run.
 
-    Raises `InputError` where they cannot be read or do not fit together, and `MeshError` where the mesh is not valid.
+    Raises `InputError` if they cannot be read or do not fit together, and `MeshError` if the mesh is not valid.
     """
     _require_rows(run.directory / DIAGNOSTICS_FILE, run.series["time"])
     with _readable(run.directory):
@@ -195,7 +195,7 @@ def checked(run: Run) -> Run:
 
 @contextmanager
 def _readable(directory: Path) -> Iterator[None]:
-    """Raise `InputError` where what is read of a run directory is not there, or not what a run writes."""
+    """Raise `InputError` if a file of the run directory is missing, or is not what a run writes."""
     try:
         yield
     except (MeshError, InputError):
@@ -206,7 +206,7 @@ def _readable(directory: Path) -> Iterator[None]:
 
 
 def _require_rows(path: Path, times: Array) -> None:
-    """Raise `InputError` where a file has no rows, or not those of ascending times that a run writes."""
+    """Raise `InputError` if a file has no rows, or its times do not ascend."""
     if not len(times):
         raise InputError(f"{path} has no rows; the run was killed at its start, run it again")
     if not np.all(np.diff(times, prepend=-1.0) > 0.0):
@@ -214,7 +214,7 @@ def _require_rows(path: Path, times: Array) -> None:
 
 
 def _require_sizes(snapshot: Snapshot, run: Run) -> None:
-    """Raise `InputError` where the fields of `snapshot` are not on the mesh of `run`."""
+    """Raise `InputError` if the fields of `snapshot` do not fit the mesh of `run`."""
     places = {"nCells": run.mesh.n_cells, "nEdges": run.mesh.n_edges, "nVertices": run.mesh.n_vertices}
     for name in snapshot.fields:
         place = FIELDS[name].place
@@ -226,7 +226,7 @@ def _require_sizes(snapshot: Snapshot, run: Run) -> None:
 
 
 def days_in_words(days: Iterable[float]) -> str:
-    """Days as a part of a sentence, the ones between the first and the last left out where there are many."""
+    """Days as part of a sentence; a long list is shortened in the middle."""
     shown = [f"{day:g}" for day in days]
     if len(shown) > DAYS_TOLD:
         shown = [*shown[:3], "...", shown[-1]]

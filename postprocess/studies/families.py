@@ -20,7 +20,7 @@ NESTED_SHARE = 4
 
 @dataclass(frozen=True)
 class Family:
-    """A way to make a mesh of about so many cells."""
+    """A way to make a mesh of about a given number of cells."""
 
     description: str
     make: Callable[[int], VoronoiMesh]

@@ -32,7 +32,7 @@ LEAST_CELLS, LARGEST_CELLS = 162, 655362
 class Plan:
     """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
 
-    Raises `InputError` where a family is unknown or a number of cells is none of the bisected icosahedron.
+    Raises `InputError` if a family is unknown or a number of cells is not that of a bisected icosahedron.
     """
 
     folder: Path
@@ -49,20 +49,20 @@ class Plan:
         for cells in self.cells:
             if icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
                 raise InputError(
-                    f"{cells} cells are no bisected icosahedron of a fit size; choose among {LEAST_CELLS}, 642, 2562, "
-                    f"... up to {LARGEST_CELLS}"
+                    f"{cells} cells are no bisected icosahedron of a suitable size; choose among {LEAST_CELLS}, 642, "
+                    f"2562, ... up to {LARGEST_CELLS}"
                 )
         require_days(self.days)
         if not 0.0 < self.error_day <= self.days:
             raise InputError(
-                f"errors are to be taken on day {self.error_day:g}, which is not within the {self.days:g} days of the "
-                "run; choose a day that is"
+                f"errors cannot be taken on day {self.error_day:g} of a run of {self.days:g} days; choose a day within "
+                "the run"
             )
 
 
 @dataclass(frozen=True)
 class Member:
-    """One mesh of a study, its run, None where that failed, and its comparison, None where there is no solution."""
+    """One mesh of a study, its run (None if that failed) and its comparison (None if there is no solution)."""
 
     family: str
     requested_cells: int
@@ -78,7 +78,7 @@ class Member:
 
 
 def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[StudyRow]]:
-    """Make what is missing of a study, coarse meshes first, and write its table; return finest members and all rows."""
+    """Do what a study still lacks, coarse meshes first, and write its table; return the finest members and all rows."""
     prepared_folder(plan.folder)
     finest: list[Member] = []
     rows: list[StudyRow] = []
@@ -102,7 +102,7 @@ def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> 
 
 
 def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
-    """The run beside the solution of its case; None where that is not known, for a reason that is told."""
+    """The run compared with the solution of its case; None, with the reason reported, if no solution is known."""
     try:
         return compare_runs(run, days=[day])
     except InputError as error:
@@ -111,7 +111,7 @@ def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
 
 
 def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
-    """Read a mesh, or make it where it is missing or was made otherwise."""
+    """Read a mesh, or make it if it is missing or was made differently."""
     origin = f"mesh of a study: {FAMILIES[family].description}; {cells} cells asked for"
     if not (path.exists() and _history(path).endswith(origin)):
         tell(f"{path.stem}: making the mesh")
@@ -121,7 +121,7 @@ def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
 
 
 def _history(path: Path) -> str:
-    """What a mesh file says of how it was made; nothing where it is not readable."""
+    """What a mesh file says about its origin; empty if the file cannot be read."""
     try:
         with dataset(path) as file:
             return str(file.history)

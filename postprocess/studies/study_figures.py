@@ -40,7 +40,7 @@ QUALITIES = {
 OPERATORS = ("gradient", "divergence", "curl", "perp", "kinetic_energy")
 MARKERS = "osD^vP*X"
 SHORT_AXIS = 30.0
-"""Logarithmic axes over a smaller ratio than this have labels at 1, 2 and 5 times powers of ten."""
+"""Logarithmic axes that span less than this ratio have labels at 1, 2 and 5 times powers of ten."""
 
 
 def error_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
@@ -68,7 +68,7 @@ def truncation_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
 
 
 def quality_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
-    """The l2 error of thickness against measures of the mesh; one colour a family, the larger the finer the mesh."""
+    """The l2 error of thickness against measures of the mesh; one colour a family, larger markers for finer meshes."""
     figure, grid = _panels(len(QUALITIES), 3)
     families, sizes = _families(rows), sorted({row["requested_cells"] for row in rows})
     for axes, (name, label) in zip(grid, QUALITIES.items(), strict=True):
@@ -95,7 +95,7 @@ def quality_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
 
 
 def conservation_figure(members: Sequence[Member], heading: str) -> Figure:
-    """Relative changes of the invariants in time, without sign, one line a mesh."""
+    """Magnitudes of the relative changes of the invariants against time, one line per mesh."""
     figure, grid = _panels(len(CONSERVATION), 2)
     for axes, name in zip(grid, CONSERVATION, strict=True):
         finished = [(member, member.run.series) for member in members if member.run is not None]
@@ -158,7 +158,7 @@ def _slope_guides(axes: Axes, rows: Sequence[StudyRow], name: str) -> None:
 
 
 def _logarithmic_abscissa(axes: Axes, values: Sequence[float]) -> None:
-    """Make the horizontal axis logarithmic, with labels neither missing nor overlapping over about a decade."""
+    """Make the horizontal axis logarithmic, with enough labels over a decade and none overlapping."""
     if not min(values) > 0.0:
         return
     axes.set_xscale("log")

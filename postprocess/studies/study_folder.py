@@ -1,4 +1,4 @@
-"""What studies share: runs that are not run again, tables as CSV, fitted orders."""
+"""What studies share: runs that are made once, tables as CSV, fitted orders."""
 
 import csv
 from collections.abc import Callable, Sequence
@@ -30,7 +30,7 @@ CONSERVATION = (
 """Series of diagnostics that are in the tables."""
 
 Tell = Callable[[str], None]
-"""Hears a line on what has been done."""
+"""Receives a line about what has been done."""
 
 StudyRow = dict[str, Any]
 """One line of a table by column: numbers and words."""
@@ -40,11 +40,9 @@ MOST_DAYS = 1e5
 
 
 def require_days(days: float) -> None:
-    """Raise `InputError` where the runs of a study cannot last for `days`."""
+    """Raise `InputError` unless runs of a study can last for `days`."""
     if not 0.0 < days <= MOST_DAYS:
-        raise InputError(
-            f"the runs of a study are to last {days:g} days; give a number above 0 and up to {MOST_DAYS:g}"
-        )
+        raise InputError(f"runs of a study cannot last {days:g} days; give a number above 0 and up to {MOST_DAYS:g}")
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ class Task:
     time_step: float | None = None
 
     def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
-        """The run, made unless it is there already; where it fails there is none, but the reason."""
+        """The run, made unless it is there already; or None and the reason why it failed."""
         run = self.finished_run()
         if run is not None:
             return run, ""
@@ -72,14 +70,14 @@ class Task:
         return read_run(self.directory), ""
 
     def _run(self, progress: bool) -> None:
-        """Go on with the run where the directory holds a part of it, else run it from the start."""
+        """Resume the run if the directory holds part of it, else start it."""
         try:
             self._simulation(resume=True).run(until=self.days, progress=progress)
         except InputError:
             self._simulation(resume=False).run(until=self.days, progress=progress)
 
     def _simulation(self, resume: bool) -> Simulation:
-        """The run, to be gone on with or to replace what the directory holds."""
+        """The simulation, which resumes the run or replaces what the directory holds."""
         return Simulation(
             self.mesh,
             self.case,
@@ -91,7 +89,7 @@ class Task:
         )
 
     def finished_run(self) -> Run | None:
-        """The run where the directory holds just this one, on this very mesh, run to the end and readable."""
+        """The run in the directory, if it is this run, on this mesh, complete and readable; else None."""
         if not self._is_recorded():
             return None
         try:

@@ -16,16 +16,16 @@ from postprocess.figures.projections import mollweide, orthographic, orthographi
 from postprocess.studies.mesh_study import Member, thickness_error
 
 IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
-"""Colours of the dots on cells with so many sides."""
+"""Colours of the dots that mark cells with this many sides."""
 
 COLOUR_RANGE = 4.0
-"""Colours of maps of errors end at this many times the root mean square."""
+"""Colours of error maps span this many times the root mean square."""
 
 CLOSEUP_CELLS = 6.0
-"""Close-ups reach so many cells from the worst one."""
+"""Close-ups reach this many cells from the worst one."""
 
 MOST_DOTS = 400
-"""Dots are left out where irregular cells are more than this: they would hide the map."""
+"""Dots are left out if more cells than this are irregular: they would hide the map."""
 
 
 def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
@@ -98,7 +98,7 @@ def _panel_for_each(
 
 
 def _colours(error: Array) -> dict:
-    """Blue to red with white at zero: a few cells that are far worse than all others do not wash out the rest."""
+    """Blue to red with white at zero; a few very bad cells do not wash out the rest."""
     root_mean_square = float(np.sqrt(np.mean(error**2)))
     return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=COLOUR_RANGE * root_mean_square or 1.0)}
 

@@ -36,7 +36,7 @@ DRAWN = {
 
 
 LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-3, 1e6
-"""Seconds; beyond, no study comes to an end or to a sense."""
+"""Shortest and longest steps of a study, s."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[StudyRow]:
 
 
 def _measured(run: Run, finest: Run, day: float) -> StudyRow:
-    """Conservation at the end, and the difference from the run of the shortest step, which is none for itself."""
+    """Conservation at the end, and the difference from the run with the shortest step (which has none)."""
     row: StudyRow = {"steps": run.steps, "courant_number": float(run.series["courant_number"].max())}
     row |= {name: float(run.series[name][-1]) for name in CONSERVATION}
     if run is finest:

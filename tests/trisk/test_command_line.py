@@ -32,7 +32,7 @@ def test_from_mesh_to_figures(trisk, mesh_file: Path, tmp_path: Path) -> None:
     (tmp_path / "run" / "figures").touch()
     code, _, err = trisk("plot", tmp_path / "run")
     assert code == 2
-    assert "figures is no folder that one can write to" in err
+    assert "figures is not a writable folder" in err
     assert "trisk mesh --cells 162" in netCDF4.Dataset(mesh_file).history
 
 

@@ -61,8 +61,8 @@ def test_bad_input_is_one_sentence_and_code_2(compare, runs: list[Path], tmp_pat
         ((runs[0], "--reference", "nowhere.nc"), "there is no reference 'nowhere.nc'"),
         ((runs[0], "--day", "nan"), "no snapshot of day nan"),
         ((tmp_path,), "holds no readable run"),
-        ((runs[0], "-o", runs[0] / "run.json"), "run.json is no folder that one can write to"),
-        ((tmp_path, "-o", runs[0] / "run.json"), "run.json is no folder that one can write to"),
+        ((runs[0], "-o", runs[0] / "run.json"), "run.json is not a writable folder"),
+        ((tmp_path, "-o", runs[0] / "run.json"), "run.json is not a writable folder"),
     ):
         code, out, err = compare(*arguments)
         assert (code, out) == (2, ""), arguments

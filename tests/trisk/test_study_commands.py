@@ -61,7 +61,7 @@ def test_spectra(trisk: Call, tmp_path: Path) -> None:
     assert "no snapshot of day 3" in err
     code, _, err = trisk("spectra", tmp_path / "run", "-o", tmp_path / "run" / "run.json")
     assert code == 2
-    assert "run.json is no folder that one can write to" in err
+    assert "run.json is not a writable folder" in err
 
 
 def test_reference(trisk: Call, tmp_path: Path) -> None:

@@ -73,7 +73,7 @@ def test_refusals(reference: Reference, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"no day 3; choose among 0\.25, 0\.5"):
         reference.thickness(LONGITUDE, LATITUDE, 3.0)
     (tmp_path / "garbage.nc").write_text("garbage")
-    with pytest.raises(InputError, match="no readable reference solution"):
+    with pytest.raises(InputError, match="not a readable reference solution"):
         read_reference(tmp_path / "garbage.nc")
     assert stored_reference("lake-at-rest") is None
 
@@ -153,7 +153,7 @@ def test_a_damaged_reference_is_refused(tmp_path: Path, name: str, index: int, v
     shutil.copy(FOLDER / "williamson5.nc", path)
     with netCDF4.Dataset(path, "a") as file:
         file[name][index] = value
-    with pytest.raises(InputError, match=f"is no readable reference solution .*{words}.*; make one with"):
+    with pytest.raises(InputError, match=f"is not a readable reference solution .*{words}.*; make one with"):
         read_reference(path)
 
 
@@ -163,7 +163,7 @@ def test_a_cut_or_mutated_reference_is_read_or_refused(tmp_path: Path, seed: int
     whole = bytearray((FOLDER / "williamson5.nc").read_bytes())
     path = tmp_path / "reference.nc"
     path.write_bytes(whole[: random.integers(len(whole))])
-    with pytest.raises(InputError, match="is no readable reference solution"):
+    with pytest.raises(InputError, match="is not a readable reference solution"):
         read_reference(path)
     for place in random.integers(8000, size=20):
         whole[place] = random.integers(256)

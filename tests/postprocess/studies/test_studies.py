@@ -164,7 +164,7 @@ def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) ->
     [
         ({"families": ("hexagons",)}, "no family of meshes named 'hexagons'; choose among bisection"),
         ({"cells": (1000,)}, "1000 cells are no bisected icosahedron"),
-        ({"cells": (42,)}, "42 cells are no bisected icosahedron of a fit size"),
+        ({"cells": (42,)}, "42 cells are no bisected icosahedron of a suitable size"),
         ({"error_day": 2.0}, "day 2, which is not within the 1 days"),
         ({"error_day": 0.0}, "day 0, which is not within"),
     ],
