@@ -1,0 +1,119 @@
+"""`open_run`: what it gives, when it reads, and how it refuses."""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import pytest
+
+import trisk
+from postprocess.runs import reading
+from swe.errors import InputError
+
+xarray = pytest.importorskip("xarray")
+
+
+def test_data_diagnostics_mesh_and_record(mountain_run: Path) -> None:
+    with trisk.open_run(mountain_run) as run:
+        with netCDF4.Dataset(mountain_run / "history.nc") as file:
+            np.testing.assert_array_equal(run.data["thickness"].values, file["thickness"][:])
+        assert isinstance(run.diagnostics, xarray.Dataset)
+        np.testing.assert_array_equal(run.diagnostics["mass"], run.series["mass"])
+        assert run.mesh.n_cells == run.data.sizes["nCells"] == 162
+        assert run.record == json.loads((mountain_run / "run.json").read_text())
+        assert run.data["thickness"].sel(Time="2000-01-01T06").sizes["nCells"] == 162
+
+
+def test_values_are_read_when_they_are_asked_for(mountain_run: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse(*_: object) -> None:
+        raise AssertionError("read too early")
+
+    monkeypatch.setattr(reading, "read_mesh", refuse)
+    monkeypatch.setattr(reading, "read_series", refuse)
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    run = trisk.open_run(mountain_run)
+    assert run.cells == 162
+    assert repr(run)
+    monkeypatch.undo()
+    assert not run.data["thickness"].variable._in_memory
+    assert run.data["thickness"].isel(Time=0).values.shape == (162,)
+
+
+def test_files_are_closed_with_the_run_and_opened_again(mountain_run: Path) -> None:
+    run = trisk.open_run(mountain_run)
+    first = run.data
+    assert run.data is first
+    closed: list[str] = []
+    run.data.set_close(lambda: closed.append("data"))
+    run.diagnostics.set_close(lambda: closed.append("diagnostics"))
+    with run:
+        assert not closed
+    assert closed == ["data", "diagnostics"]
+    assert run.data is not first
+    assert run.data["thickness"].isel(Time=-1).values.min() > 0.0
+    run.close()
+    run.close()
+
+
+def test_a_run_shows_itself_in_a_few_lines(mountain_run: Path) -> None:
+    assert repr(trisk.open_run(mountain_run)).splitlines() == [
+        f"<Run of williamson5 in {mountain_run}",
+        "  completed, day 0.5 of 0.5",
+        "  mesh: 162 cells on a sphere of radius 6.37122e+06 m",
+        "  snapshots: 3, days 0, 0.25, 0.5>",
+    ]
+
+
+@pytest.mark.parametrize(("name", "place"), [("data", "history.nc"), ("diagnostics", "diagnostics.nc")])
+def test_without_xarray_a_sentence_names_the_command(
+    mountain_run: Path, monkeypatch: pytest.MonkeyPatch, name: str, place: str
+) -> None:
+    monkeypatch.setitem(sys.modules, "xarray", None)
+    run = trisk.open_run(mountain_run)
+    with pytest.raises(InputError, match=rf"{place} .* xarray, .*; install it with pip install 'trisk\[xarray\]'$"):
+        getattr(run, name)
+
+
+def copied(run: Path, to: Path) -> Path:
+    return Path(shutil.copytree(run, to / "run"))
+
+
+def test_no_folder_and_no_run(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none holds no readable run \(there is no such folder\); name a directory"):
+        trisk.open_run(tmp_path / "none")
+    with pytest.raises(InputError, match=r"holds no readable run .*run\.json.*; name a directory that a run wrote"):
+        trisk.open_run(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["run.json", "history.nc"])
+def test_a_file_that_cannot_be_read(mountain_run: Path, tmp_path: Path, name: str) -> None:
+    run = copied(mountain_run, tmp_path)
+    (run / name).write_bytes(b"nothing")
+    with pytest.raises(InputError, match=r"holds no readable run \(.*\); name a directory that a run wrote"):
+        trisk.open_run(run)
+
+
+def test_diagnostics_that_cannot_be_read(mountain_run: Path, tmp_path: Path) -> None:
+    run = trisk.open_run(copied(mountain_run, tmp_path))
+    (run.directory / "diagnostics.nc").write_bytes(b"nothing")
+    with pytest.raises(InputError, match=r"diagnostics\.nc cannot be read \(.*\); name a directory that a run wrote"):
+        _ = run.diagnostics
+    with pytest.raises(InputError, match="holds no readable run"):
+        _ = run.series
+
+
+def test_a_run_without_snapshots(mountain_run: Path, tmp_path: Path) -> None:
+    run = copied(mountain_run, tmp_path)
+    content = bytearray((run / "history.nc").read_bytes())
+    content[4:8] = bytes(4)  # the number of rows
+    (run / "history.nc").write_bytes(content)
+    with pytest.raises(InputError, match=r"history\.nc has no rows; the run was killed at its start, run it again"):
+        trisk.open_run(run)
+
+
+def test_a_day_without_a_snapshot(mountain_run: Path) -> None:
+    with pytest.raises(InputError, match=r"has no snapshot of day 3; its days are 0, 0\.25, 0\.5"):
+        trisk.open_run(mountain_run).snapshot(3.0)
