@@ -67,8 +67,8 @@ def _draw_mollweide_graticule(axes: Axes, central_longitude: float) -> None:
         axes.text(x - 0.05, y, latitude_label(degrees), ha="right", va="center", fontsize=7)
     for degrees in (-120, -60, 0, 60, 120):
         x, _ = mollweide(np.array(np.radians(degrees)), np.array(0.0))
-        longitude = whole_degrees_east(float(np.radians(degrees)) + central_longitude)
-        axes.text(x, 0.03, f"{longitude}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
+        east = whole_degrees_east(float(np.radians(degrees)) + central_longitude)
+        axes.text(x, 0.03, f"{east}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
     axes.set_xlim(-3.2, 2.9)
     axes.set_ylim(-1.48, 1.48)
 

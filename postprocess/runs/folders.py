@@ -13,7 +13,9 @@ def require_possible_folder(path: AnyPath) -> None:
     # os.path.exists is false, rather than an error, where a folder on the way cannot be searched.
     existing = next(each for each in (path, *path.absolute().parents) if os.path.exists(each))
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise InputError(f"results cannot be written to {path}: {existing} is not a writable folder; choose another place")
+        raise InputError(
+            f"results cannot be written to {path}: {existing} is not a writable folder; choose another place"
+        )
 
 
 def prepared_folder(path: AnyPath) -> Path:

@@ -11,9 +11,9 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
-from mesh.safe_files import AnyPath, dataset
 from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
+from mesh.safe_files import AnyPath, dataset
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs.labelled import opened_by_xarray
 from swe.constants import SECONDS_PER_DAY
@@ -57,8 +57,8 @@ class Run:
     """A run directory: what its record says, and its files, each read on first use.
 
     `case` is the name of the case and `parameters` are its parameters; `sampling` says how the initial thickness was
-    sampled, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` the number of steps. `days`
-    lists the days of the snapshots; the mesh has `cells` cells. `record` is the content of `run.json`.
+    sampled, see `mesh.integrals.quadrature`. `time_step` is the longest step, s, and `steps` the number of steps.
+    `days` lists the days of the snapshots; the mesh has `cells` cells. `record` is the content of `run.json`.
 
     `data` and `diagnostics` keep their files open until `close`, or the end of a `with` block.
     """

@@ -22,13 +22,17 @@ def test_trying_makes_nothing(tmp_path: Path) -> None:
 def test_file_is_no_folder(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     for path in (tmp_path / "file", tmp_path / "file" / "below"):
-        with pytest.raises(InputError, match=f"results cannot be written to {path}: {tmp_path}/file is not a writable folder"):
+        with pytest.raises(
+            InputError, match=f"results cannot be written to {path}: {tmp_path}/file is not a writable folder"
+        ):
             prepared_folder(path)
 
 
 def test_folder_that_is_read_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(os, "access", lambda path, mode: Path(path) != tmp_path)  # as the superuser may write anyway
-    with pytest.raises(InputError, match=f"results cannot be written to {tmp_path}/below: {tmp_path} is not a writable folder"):
+    with pytest.raises(
+        InputError, match=f"results cannot be written to {tmp_path}/below: {tmp_path} is not a writable folder"
+    ):
         prepared_folder(tmp_path / "below")
 
 
