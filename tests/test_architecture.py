@@ -14,7 +14,7 @@ ROOMS = {
     "swe": ["", "parallel", "equations", "tiles", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
     "postprocess": ["", "runs", "reference", "compare", "figures", "studies", "pages"],
-    "trisk": ["cli", ""],
+    "trisk": ["report", "arguments", "cli", ""],
 }
 """Rooms of each package; one may use those that stand before it. The package itself is the first."""
 

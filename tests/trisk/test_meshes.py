@@ -4,7 +4,7 @@ import pytest
 import typer
 
 from mesh import scvt_mesh, write_mesh
-from trisk.cli.meshes import chosen_mesh
+from trisk.arguments.meshes import chosen_mesh
 
 
 def test_mesh_is_read_or_generated(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

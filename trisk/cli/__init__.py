@@ -1,1 +1,1 @@
-"""What the commands of `trisk` do."""
+"""The commands of `trisk`, one module each; packages are imported when a command needs them."""

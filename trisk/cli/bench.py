@@ -1,17 +1,18 @@
-"""`trisk bench`: the meshes it times on, and the table it prints."""
+"""`trisk bench`: time the solver on meshes of several sizes."""
 
+import json
 from collections.abc import Iterator, Sequence
+from dataclasses import asdict
 from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
-from rich.console import Console
-from rich.table import Table
 
-from cases import find_case
-from mesh import VoronoiMesh, read_mesh, scvt_mesh
-from mesh.generation.generators import MINIMUM_CELLS
-from swe import Simulation
-from swe.run.benchmark import Timing, measure
+from trisk.cli.options import Quiet, Recompute
+
+if TYPE_CHECKING:
+    from mesh import VoronoiMesh
+    from swe.run.benchmark import Timing
 
 CASE = "williamson5"
 DEFAULT_CELLS = (10242, 40962)
@@ -20,8 +21,36 @@ TOLERANCE = 1e-2
 """Residual of the meshes made for timing: the cost of a step hardly depends on it, that of the mesh does."""
 
 
-def timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool, show: bool) -> list[Timing]:
+def bench(
+    cells: Annotated[
+        list[int] | None,
+        typer.Option("--cells", metavar="N", help="Number of cells, repeatable; by default 10242 and 40962."),
+    ] = None,
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time on this mesh instead.")] = None,
+    recompute_metrics: Recompute = False,
+    as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
+    quiet: Quiet = False,
+) -> None:
+    """Time the solver.
+
+    Tells the cost of a step of test case 5, beside plain loops and beside what the memory could do.
+    """
+    results = _timings(mesh_file, cells or (), recompute_metrics, show=not quiet)
+    if as_json:
+        typer.echo(json.dumps([asdict(timing) for timing in results]))
+    else:
+        from trisk.report.timings_table import print_timings
+
+        print_timings(results, CASE)
+
+
+def _timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool, show: bool) -> "list[Timing]":
     """Timings of test case 5 on the mesh of a file or on meshes of so many cells, told one by one if `show`."""
+    from cases import find_case
+    from mesh.generation.generators import MINIMUM_CELLS
+    from swe import Simulation
+    from swe.run.benchmark import measure
+
     if mesh_file is not None and cells:
         raise typer.BadParameter("give either --mesh FILE or --cells N")
     if recompute_metrics and mesh_file is None:
@@ -37,33 +66,11 @@ def timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: boo
     return results
 
 
-def _meshes(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool) -> Iterator[VoronoiMesh]:
+def _meshes(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool) -> "Iterator[VoronoiMesh]":
+    from mesh import read_mesh, scvt_mesh
+
     if mesh_file is not None:
         yield read_mesh(mesh_file, recompute_metrics)
         return
     for number in cells:
         yield scvt_mesh(number, tolerance=TOLERANCE)
-
-
-def print_timings(results: Sequence[Timing]) -> None:
-    """Print a table of timings."""
-    table = Table(
-        title=f"{CASE}, classical RK4: cost per cell and step, medians of alternating turns",
-        caption="ns: fused; plain: plain loops; bytes: every array once for each stage; GB/s: bytes by ns; "
-        "triad: GB/s of STREAM; budget: bytes that the triad would move in that time",
-    )
-    for heading in ("cells", "threads", "ns", "plain", "ratio", "bytes", "GB/s", "triad", "budget"):
-        table.add_column(heading, justify="right", no_wrap=True)
-    for timing in results:
-        table.add_row(
-            str(timing.cells),
-            str(timing.threads),
-            f"{timing.ns_per_cell_step:.1f}",
-            f"{timing.plain_ns_per_cell_step:.0f}",
-            f"{timing.plain_twin_ratio:.2f}",
-            f"{timing.bytes_per_cell_step:.0f}",
-            f"{timing.gb_per_s:.1f}",
-            f"{timing.triad_gb_per_s:.1f}",
-            f"{timing.ns_per_cell_step * timing.triad_gb_per_s:.0f}",
-        )
-    Console().print(table)

@@ -1,45 +1,42 @@
-"""`trisk reference`: solutions by the spectral model, with progress."""
+"""`trisk reference`: solutions by the spectral model."""
 
-from collections.abc import Sequence
 from pathlib import Path
+from typing import Annotated
 
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Table
+import typer
 
-from cases.base import Case
-from postprocess.reference.making import MEASURES, REFERENCE_DAYS, Reference, make_reference
-from postprocess.reference.reference_file import write_reference
-from trisk.cli.outputs import require_possible_file
+from trisk.cli.options import CaseName, Quiet, Settings
 
 
-def make(
-    case: Case, days: Sequence[float], truncation: int, damping_hours: float, output: Path, history: str, quiet: bool
+def reference(
+    case: CaseName,
+    output: Annotated[Path, typer.Option("--output", "-o", help="File of harmonics to write.")],
+    days: Annotated[
+        list[float] | None, typer.Option("--day", help="Day to keep, repeatable; by default those of the case.")
+    ] = None,
+    truncation: Annotated[
+        int, typer.Option("--truncation", help="Highest total wavenumber; its half and quarter are run as well.")
+    ] = 341,
+    damping_hours: Annotated[
+        float, typer.Option("--damping-hours", help="Time in which del^8 damps that wavenumber to 1/e; inf for none.")
+    ] = 1.0,
+    settings: Settings = None,
+    quiet: Quiet = False,
 ) -> None:
-    """Run the spectral model, write the reference and print how its truncations differ."""
+    """Make a reference solution of a case with the spectral model."""
+    from cases import find_case
+    from cases.parameters import split_settings
+    from postprocess.reference.making import REFERENCE_DAYS, make_reference
+    from postprocess.reference.reference_file import write_reference
+    from trisk.arguments.outputs import command_line, require_possible_file
+    from trisk.report.bars import bars_of_parts
+    from trisk.report.reference_table import print_differences
+
+    chosen = find_case(case, split_settings(settings or ()))
     require_possible_file(output)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
-    with Progress(*columns, console=Console(stderr=True), disable=quiet) as progress:
-        tasks = {}
-
-        def show(what: str, part: float) -> None:
-            if what not in tasks:
-                tasks[what] = progress.add_task(what, total=1.0)
-            progress.update(tasks[what], completed=part)
-
-        chosen = tuple(sorted(days)) or REFERENCE_DAYS.get(case.name, (case.recommended_days,))
-        reference = make_reference(case, chosen, truncation, damping_hours, history, show)
-    write_reference(reference, output)
+    chosen_days = tuple(sorted(days or ())) or REFERENCE_DAYS.get(chosen.name, (chosen.recommended_days,))
+    with bars_of_parts(not quiet) as show:
+        made = make_reference(chosen, chosen_days, truncation, damping_hours, command_line(), show)
+    write_reference(made, output)
     if not quiet:
-        _print_differences(reference)
-
-
-def _print_differences(reference: Reference) -> None:
-    finest = reference.truncations[-1]
-    table = Table(title=f"{reference.case.title}: relative l2 norms of the difference from T{finest}")
-    for column in ("truncation", "day", *MEASURES):
-        table.add_column(column, justify="right")
-    for truncation, by_day in zip(reference.truncations[:-1], reference.differences, strict=True):
-        for day, norms in zip(reference.days, by_day, strict=True):
-            table.add_row(f"T{truncation}", f"{day:g}", *(f"{norm:.2e}" for norm in norms))
-    Console().print(table)
+        print_differences(made)

@@ -77,7 +77,7 @@ def time(
     from cases.parameters import split_settings
     from postprocess.studies.study_report import write_time_report
     from postprocess.studies.time_study import TimePlan, carry_out
-    from trisk.cli.meshes import chosen_mesh
+    from trisk.arguments.meshes import chosen_mesh
 
     chosen = find_case(case, split_settings(settings or ()))
     used = chosen_mesh(mesh_file, cells, recompute_metrics, quiet)

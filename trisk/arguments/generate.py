@@ -19,8 +19,8 @@ from mesh.generation.pipeline import mesh_of
 from mesh.generation.scvt import Request, check_converged, generate_scvt, optimize
 from mesh.generation.well_centered import GOAL, well_center
 from mesh.geometry.sphere import normalize
-from trisk.cli.outputs import require_possible_file
-from trisk.cli.report import convergence_bar
+from trisk.arguments.outputs import require_possible_file
+from trisk.report.bars import convergence_bar
 
 
 @dataclass(frozen=True)

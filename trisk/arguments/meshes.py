@@ -7,7 +7,7 @@ import typer
 from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh
 from mesh.generation.pipeline import UNIFORM_TOLERANCE
 from swe.output.files import MESH_FILE
-from trisk.cli.report import convergence_bar
+from trisk.report.bars import convergence_bar
 
 
 def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bool, quiet: bool) -> VoronoiMesh:

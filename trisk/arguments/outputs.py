@@ -1,9 +1,11 @@
-"""Files that commands write, tried before the work that fills them."""
+"""Files that commands write: tried before the work that fills them, and the command line that they keep."""
 
+import shlex
+import sys
 import tempfile
 from pathlib import Path
 
-from mesh.safe_files import place_of
+from mesh.safe_files import name_in_text, place_of
 from swe.errors import InputError
 
 
@@ -19,3 +21,8 @@ def require_possible_file(path: Path) -> None:
             pass
     except OSError as error:
         raise InputError(f"{path} cannot be written ({error.strerror}); choose another place") from error
+
+
+def command_line() -> str:
+    """The command as it was typed, for the history of files."""
+    return name_in_text(shlex.join(["trisk", *sys.argv[1:]]))

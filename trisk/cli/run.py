@@ -1,0 +1,101 @@
+"""`trisk run`: integrate a test case, or go on with a run."""
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import typer
+
+from trisk.cli.options import CaseName, Quiet, Recompute, Settings
+
+
+def run(
+    case: CaseName,
+    output: Annotated[Path, typer.Option("--output", "-o", help="Run directory to create.")],
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
+    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
+    settings: Settings = None,
+    means: Annotated[
+        bool, typer.Option("--cell-means", help="Start from means over the cells instead of values at their centres.")
+    ] = False,
+    days: Annotated[
+        float | None,
+        typer.Option(
+            "--days", help="Simulated days since the start; by default those that the paper recommends, or of the run."
+        ),
+    ] = None,
+    time_step: Annotated[
+        float | None, typer.Option("--dt", help="Time step in seconds; by default from the mesh and the wave speed.")
+    ] = None,
+    snapshot_hours: Annotated[float, typer.Option("--snapshot-hours", help="Hours between snapshots.")] = 24.0,
+    diagnostics_hours: Annotated[float, typer.Option("--diagnostics-hours", help="Hours between diagnostics.")] = 6.0,
+    checkpoint_hours: Annotated[
+        float, typer.Option("--checkpoint-hours", help="Simulated hours between checkpoints.")
+    ] = 24.0,
+    integrator: Annotated[
+        Literal["rk4", "rrk4"],
+        typer.Option("--integrator", help="rk4, or rrk4, which scales its steps to keep total energy to round-off."),
+    ] = "rk4",
+    anticipation: Annotated[
+        float,
+        typer.Option(
+            "--apvm", help="Part of a step by which potential vorticity is anticipated (APVM), 0.5 in the literature."
+        ),
+    ] = 0.0,
+    dissipation: Annotated[
+        float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
+    ] = 0.0,
+    force: Annotated[bool, typer.Option("--force", help="Replace a run that the directory holds.")] = False,
+    resume: Annotated[
+        bool,
+        typer.Option(
+            "--resume", help="Go on with the run in the directory, on its mesh; a finished one to a later --days."
+        ),
+    ] = False,
+    recompute_metrics: Recompute = False,
+    quiet: Quiet = False,
+) -> None:
+    """Run a test case and write snapshots and diagnostics.
+
+    Ctrl-C and SIGTERM stop it with a checkpoint.
+    """
+    from cases import find_case
+    from cases.parameters import split_settings
+    from swe import Simulation
+    from swe.configuration import Options
+    from swe.errors import InputError
+    from swe.output.recorder import days_of, run_to_go_on_with
+    from trisk.arguments.meshes import chosen_mesh, mesh_of_run
+    from trisk.report.summaries import print_run
+
+    chosen = find_case(case, split_settings(settings or ()))
+    options: dict[str, Any] = {
+        "time_step": time_step,
+        "snapshot_interval": 3600.0 * snapshot_hours,
+        "diagnostics_interval": 3600.0 * diagnostics_hours,
+        "checkpoint_interval": 3600.0 * checkpoint_hours,
+        "sampling": "mean" if means else "point",
+        "integrator": integrator,
+        "anticipation": anticipation,
+        "dissipation": dissipation,
+    }
+    # What can be refused is so before a mesh is made for nothing.
+    Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)
+    before = run_to_go_on_with(output, force, resume)
+    if days is None:
+        days = chosen.recommended_days if before is None else days_of(before, output)
+    if not 0.0 < days < float("inf"):
+        raise InputError(f"the run is to last {days:g} days; give a number above 0")
+    if resume and recompute_metrics and mesh_file is None:
+        raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
+    known = mesh_of_run(output, cells) if resume and mesh_file is None else None
+    simulation = Simulation(
+        known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
+        chosen,
+        output,
+        overwrite=force,
+        resume=resume,
+        **options,
+    )
+    simulation.run(until=days, progress=not quiet)
+    if not quiet:
+        print_run(output)

@@ -1,0 +1,1 @@
+"""What the commands show: bars of progress, tables, and the streams that they go to."""

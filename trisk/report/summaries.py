@@ -1,0 +1,60 @@
+"""Summaries of a mesh and of a run."""
+
+import math
+from pathlib import Path
+
+from rich.console import Console
+from rich.table import Table
+
+from mesh import VoronoiMesh
+from mesh.discrete.quality import quality_and_note
+from swe.output.files import DIAGNOSTICS_FILE, load_record, read_series
+
+
+def print_quality(mesh: VoronoiMesh, name: str) -> None:
+    """Print the quality of `mesh` as a table."""
+    measured, note = quality_and_note(mesh)
+    known = "unknown" if math.isnan(measured.residual) else f"{measured.residual:.2e} mean spacings"
+    rows = [
+        ("cells", str(measured.cells)),
+        ("largest / smallest neighbour distance (mu)", f"{measured.mu:.6f}"),
+        ("mean of shortest / longest distance (sigma_avg)", f"{measured.sigma_avg:.6f}"),
+        ("smallest of those (sigma_min)", f"{measured.sigma_min:.6f}"),
+        ("mean triangle quality (q_avg)", f"{measured.q_avg:.6f}"),
+        ("smallest triangle quality (q_min)", f"{measured.q_min:.6f}"),
+        ("distance to the centroids, at most (residual)", known),
+        *([("on the residual", note)] if note else []),
+        ("obtuse triangles", str(measured.obtuse)),
+        ("largest / smallest cell area", f"{measured.area_ratio:.6f}"),
+    ]
+    _print_table(f"Quality of {name}", rows)
+
+
+def print_run(directory: Path) -> None:
+    """Print the summary of a finished run as a table, and where its files are."""
+    record = load_record(directory)
+    series = read_series(directory / DIAGNOSTICS_FILE)
+    last = {name: float(values[-1]) for name, values in series.items()}
+    rows = [
+        ("status", record["status"]),
+        ("cells, threads", f"{record['cells']}, {record['threads']}"),
+        ("day reached", f"{record['day_reached']:g}"),
+        ("time step, steps", f"{record['configuration']['time_step']:g} s, {record['steps']}"),
+        ("wall-clock time", f"{record['wall_seconds']:.1f} s"),
+        ("Courant number", f"{last['courant_number']:.2f}"),
+        ("largest speed", f"{last['max_speed']:.2f} m/s"),
+        ("change of mass", f"{last['mass_change']:+.2e}"),
+        ("change of total energy, of the available", f"{last['total_energy_change']:+.2e}"),
+        ("change of total energy, of the total", f"{last['total_energy_change_of_total']:+.2e}"),
+        ("change of potential enstrophy", f"{last['potential_enstrophy_change']:+.2e}"),
+        ("change of absolute vorticity, of |f|", f"{last['absolute_vorticity_change']:+.2e}"),
+        ("files", str(directory)),
+    ]
+    _print_table(f"Run of {record['case']}", rows)
+
+
+def _print_table(title: str, rows: list[tuple[str, str]]) -> None:
+    table = Table(title=title, show_header=False)
+    for row in rows:
+        table.add_row(*row)
+    Console().print(table)
