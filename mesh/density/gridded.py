@@ -18,9 +18,10 @@ from mesh.density.scaling import SAFE_EXPONENT
 from mesh.density.scattered import density_from_points
 from mesh.errors import MeshError
 from mesh.geometry.sphere import from_lonlat, normalize
+from mesh.mesh_request import MeshRequest
 from mesh.safe_files import dataset
 
-DENSITY_VARIABLE = "density"
+DENSITY_VARIABLE = MeshRequest.density_variable
 SMOOTHING_NEIGHBOURS = 6
 MOST_PASSES = 10_000
 
@@ -33,9 +34,9 @@ class Shaping:
     and raised to `power` (-4 for a field of cell widths).
     """
 
-    floor: float = 0.0
-    power: float = 1.0
-    smoothing: int = 0
+    floor: float = MeshRequest.density_floor
+    power: float = MeshRequest.density_power
+    smoothing: int = MeshRequest.density_smoothing
 
     def __post_init__(self) -> None:
         if not (0.0 <= self.floor < np.inf and np.isfinite(self.power) and 0 <= self.smoothing <= MOST_PASSES):

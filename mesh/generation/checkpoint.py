@@ -1,16 +1,21 @@
 """Checkpoints of a mesh generation: the best points so far, to go on from after an interruption."""
 
 import json
+import os
 import time
 import zipfile
-from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
+from typing import Self
 
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.density.gridded import FileDensity, Shaping
+from mesh.density.record import name_of
 from mesh.errors import MeshError
 from mesh.generation.optimizer import Iterate
+from mesh.mesh_request import MeshRequest
 from mesh.safe_files import written_aside
 
 SECONDS_BETWEEN = 30.0
@@ -25,14 +30,29 @@ def checkpoint_path(output: Path) -> Path:
 class CheckpointKeeper:
     """A callback that keeps the iterate of the smallest residual, and writes it to `path` every half minute.
 
-    `description` says what is being generated; only the same generation may go on from the file.
+    Only the same `request` may go on from the file. As a context, it saves the points when the work in it fails, and
+    removes the file when all went well.
     """
 
-    def __init__(self, path: Path, description: Mapping[str, object]) -> None:
+    def __init__(self, path: Path, request: MeshRequest) -> None:
         self._path = path
-        self._description = dict(description)
+        self._description = described(request)
         self._best: tuple[float, Array] | None = None
         self._saved = time.monotonic()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, *_: object) -> None:
+        if kind is None:
+            self.remove()
+        else:
+            self.save()
+
+    @property
+    def has_points(self) -> bool:
+        """Whether there are points to go on from."""
+        return self._best is not None
 
     def __call__(self, iterate: Iterate) -> None:
         """Take note of an iterate."""
@@ -56,9 +76,46 @@ class CheckpointKeeper:
         """Delete the file of a generation that is complete."""
         self._path.unlink(missing_ok=True)
 
+    def load(self) -> Array:
+        """Points (n, 3) to go on from.
 
-def load_checkpoint(path: Path, description: Mapping[str, object]) -> Array:
-    """Points (n, 3) to go on from; raise `MeshError` where there are none, or they belong to another generation."""
+        Raises `MeshError` where there are none, or they belong to another request.
+        """
+        path, points, stored = self._path, *_read(self._path)
+        for name, value in self._description.items():
+            if stored.get(name) != value:
+                raise MeshError(
+                    f"{path}: the checkpoint was made with {name} = {stored.get(name)}, not {value}; "
+                    "give the same options, or start without --resume"
+                )
+        if len(points) != self._description["cells"]:
+            raise MeshError(
+                f"{path}: the checkpoint has {len(points)} points, not {self._description['cells']}; start anew"
+            )
+        return points
+
+
+def described(request: MeshRequest) -> dict[str, object]:
+    """What determines the generation of a mesh, as words and numbers; how it ends does not."""
+    density = request.density
+    if isinstance(density, FileDensity):
+        variable, shaping = density.variable, density.shaping
+    else:
+        variable = request.density_variable
+        shaping = Shaping(request.density_floor, request.density_power, request.density_smoothing)
+    return {
+        "cells": request.cells,
+        "density": os.fspath(density) if isinstance(density, str | os.PathLike) else name_of(density),
+        "density variable": variable,
+        **{f"density {name}": value for name, value in asdict(shaping).items()},
+        "start": request.start,
+        "seed": request.seed,
+        "method": request.method,
+    }
+
+
+def _read(path: Path) -> tuple[Array, dict[str, object]]:
+    """Points (n, 3) of a checkpoint and the description of their mesh; raise `MeshError` where it is none."""
     try:
         with np.load(path) as file:
             points, stored = file["points"], dict(json.loads(str(file["description"])).items())
@@ -68,12 +125,4 @@ def load_checkpoint(path: Path, description: Mapping[str, object]) -> Array:
         raise MeshError(f"{path}: there is no checkpoint to resume from; start without --resume") from error
     except (OSError, EOFError, LookupError, ValueError, TypeError, AttributeError, zipfile.BadZipFile) as error:
         raise MeshError(f"{path}: not a readable checkpoint ({error}); remove it and start anew") from error
-    for name, value in description.items():
-        if stored.get(name) != value:
-            raise MeshError(
-                f"{path}: the checkpoint was made with {name} = {stored.get(name)}, not {value}; "
-                "give the same options, or start without --resume"
-            )
-    if len(points) != description.get("cells", len(points)):
-        raise MeshError(f"{path}: the checkpoint has {len(points)} points, not {description['cells']}; start anew")
-    return points
+    return points, stored

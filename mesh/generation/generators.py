@@ -7,12 +7,13 @@ from mesh.density.named import Density, density_at, uniform
 from mesh.density.scaling import largest_value, within_range
 from mesh.errors import MeshError
 from mesh.geometry.sphere import fibonacci_points, normalize
+from mesh.mesh_request import MeshRequest
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.half_edges import build_twins
 
 MINIMUM_CELLS, MAXIMUM_CELLS = 12, (2**31 - 1) // 6
 STARTS = ("icosahedral", "fibonacci", "random", "random-root")
-DEFAULT_SEED = 0
+DEFAULT_SEED = MeshRequest.seed
 
 DENSITY_MARGIN = 1.05
 SMALLEST_ACCEPTANCE = 1e-3

@@ -22,6 +22,7 @@ from mesh.generation.multilevel import MultilevelPreconditioner
 from mesh.geometry.sphere import mean_spacing
 from mesh.integrals.moments import evaluate, number_of_blocks
 from mesh.integrals.weighted_moments import WeightedCells
+from mesh.mesh_request import MeshRequest
 from mesh.triangulation.moving import Triangulation
 
 PAIRS = 7
@@ -81,8 +82,8 @@ class Limits:
     """
 
     tolerance: float = 1e-8
-    iterations: int = 10_000
-    seconds: float = float("inf")
+    iterations: int = MeshRequest.max_iterations
+    seconds: float = MeshRequest.max_seconds
     acceptable: float = 0.0
 
     def __post_init__(self) -> None:

@@ -1,51 +1,115 @@
-"""From a number of cells to an SCVT: defaults, and the mesh that comes of the generators."""
+"""From the description of a mesh to the mesh: the one way, of `scvt_mesh` and of the command line."""
 
 import os
-from dataclasses import replace
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
-from mesh.density.gridded import find_density
-from mesh.density.named import Density, uniform
+from mesh.arrays import Array
+from mesh.density.named import Density
 from mesh.density.record import name_of, source_of
 from mesh.discrete.build import mesh_from_points
-from mesh.generation.generators import DEFAULT_SEED
-from mesh.generation.optimizer import Callback, Limits, ScvtResult
-from mesh.generation.scvt import Request, generate_scvt
+from mesh.errors import MeshError
+from mesh.generation.checkpoint import CheckpointKeeper
+from mesh.generation.nested import nested_scvt
+from mesh.generation.optimizer import Callback, Iterate, Limits, ScvtResult
+from mesh.generation.scvt import cells_of, check_converged, converge, density_of, limits_of, optimize
+from mesh.generation.well_centered import GOAL, WellCentered, well_center
+from mesh.geometry.sphere import normalize
+from mesh.mesh_request import MeshRequest
 from mesh.plain import plain_count, plain_number
 from mesh.voronoi_mesh import VoronoiMesh
 
-UNIFORM_TOLERANCE, VARIABLE_TOLERANCE = 1e-8, 1e-6
-"""Centroid residuals, in mean spacings, at which an SCVT counts as converged."""
 
-ACCEPTABLE = 1e-4
-"""The same where quadrature of the density ends the descent: kinks between values of a coarse field leave less."""
+@dataclass(frozen=True)
+class GeneratedMesh:
+    """A validated mesh on the unit sphere, and what its angles cost where it was to be well-centred."""
 
-SAMPLING_TOLERANCES = {"probabilistic": (0.02, 0.2), "macqueen": (0.1, 0.5)}
-"""The same, under uniform and any other density, for the methods whose residual falls like the root of the samples."""
+    mesh: VoronoiMesh
+    centring: WellCentered | None = None
 
 
-def default_tolerance(density: str | Density, method: str = "lbfgs") -> float:
-    """The residual to ask for under a density: quadrature does not allow as small a one as uniform density does.
+def scvt_mesh(
+    cells: int | None = MeshRequest.cells,
+    density: str | os.PathLike[str] | Density = MeshRequest.density,
+    start: str | None = MeshRequest.start,
+    method: str = MeshRequest.method,
+    tolerance: float | None = MeshRequest.tolerance,
+    max_iterations: int = MeshRequest.max_iterations,
+    seed: int = MeshRequest.seed,
+    callback: Callback | None = None,
+    *,
+    nested: VoronoiMesh | None = MeshRequest.nested,
+    well_centered: bool = MeshRequest.well_centered,
+    max_seconds: float = MeshRequest.max_seconds,
+    density_variable: str = MeshRequest.density_variable,
+    density_floor: float = MeshRequest.density_floor,
+    density_power: float = MeshRequest.density_power,
+    density_smoothing: int = MeshRequest.density_smoothing,
+    checkpoint: str | os.PathLike[str] | None = None,
+    resume: bool = False,
+) -> VoronoiMesh:
+    """A validated SCVT on the unit sphere; see `mesh.mesh_request.MeshRequest` for what it may be asked to be.
 
-    Methods that sample the density have the error of their samples: what thousands of cells reach in a minute or so.
+    `callback` is called with each iterate. `checkpoint` names a file that keeps the best points of a generation that
+    fails or is interrupted; with `resume`, the same call goes on from there. Raises `MeshError` where no such mesh can
+    be made.
     """
-    uniform_tolerance, other = SAMPLING_TOLERANCES.get(method, (UNIFORM_TOLERANCE, VARIABLE_TOLERANCE))
-    return uniform_tolerance if density in ("uniform", uniform) else other
+    if not isinstance(nested, VoronoiMesh | None):
+        raise MeshError(f"the mesh to refine is {nested!r}; it must be a VoronoiMesh, such as read_mesh gives")
+    request = MeshRequest(
+        cells=None if cells is None and nested is not None else plain_count("the number of cells", cells),
+        density=density,
+        start=start,
+        method=method,
+        tolerance=None if tolerance is None else plain_number("the tolerance", tolerance),
+        max_iterations=plain_count("the largest number of iterations", max_iterations),
+        seed=plain_count("the seed", seed),
+        nested=nested,
+        well_centered=well_centered,
+        max_seconds=plain_number("the time allowed", max_seconds),
+        density_variable=density_variable,
+        density_floor=plain_number("the floor of the density", density_floor),
+        density_power=plain_number("the power of the density", density_power),
+        density_smoothing=plain_count("the number of passes of smoothing", density_smoothing),
+    )
+    if checkpoint is None:
+        if resume:
+            raise MeshError("there is no checkpoint to resume from; name its file with checkpoint")
+        return generate_mesh(request, callback).mesh
+    with CheckpointKeeper(Path(checkpoint), request) as keeper:
+        return generate_mesh(request, callback, keeper, resume).mesh
 
 
-def default_limits(
-    density: str | Density,
-    method: str,
-    tolerance: float | None = None,
-    iterations: int = 10_000,
-    seconds: float = float("inf"),
-) -> Limits:
-    """Limits of an optimisation; without a tolerance, the default one.
+def generate_mesh(
+    request: MeshRequest,
+    callback: Callback | None = None,
+    keeper: CheckpointKeeper | None = None,
+    resume: bool = False,
+) -> GeneratedMesh:
+    """Make the mesh of the `request`; with `resume`, from the points of the `keeper`, which sees each iterate.
 
-    Kinks of a density may not allow that, and then a residual of `ACCEPTABLE` will do.
+    A nested mesh keeps no checkpoint. Raises `MeshError` where the request cannot be met.
     """
-    if tolerance is not None:
-        return Limits(tolerance, iterations, seconds)
-    return Limits(default_tolerance(density, method), iterations, seconds, ACCEPTABLE)
+    begin = time.perf_counter()
+    if request.nested is None:
+        cells_of(request)
+    else:
+        _require_one_start(request, resume)
+    density = density_of(request)
+    limits = limits_of(request)
+    if request.nested is not None:
+        result = _refined(request.nested, request, density, limits.since(begin), callback)
+    else:
+        watching = [each for each in (callback, keeper) if each is not None]
+        start = keeper.load() if keeper is not None and resume else None
+        result = _from_start(start, request, density, limits.since(begin), _all_of(watching))
+    centring = None
+    if request.well_centered:
+        centring = _well_centered(result, density, limits.since(begin).seconds)
+        result = replace(result, points=centring.points, triangles=centring.triangles)
+    return GeneratedMesh(mesh_of(result, density), centring)
 
 
 def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:
@@ -54,27 +118,48 @@ def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:
     return replace(mesh, density_source=source_of(density), fixed_cells=result.fixed)
 
 
-def scvt_mesh(
-    cells: int,
-    density: str | os.PathLike[str] | Density = "uniform",
-    start: str | None = None,
-    method: str = "lbfgs",
-    tolerance: float | None = None,
-    max_iterations: int = 10_000,
-    seed: int = DEFAULT_SEED,
-    callback: Callback | None = None,
-) -> VoronoiMesh:
-    """A validated SCVT on the unit sphere; see `mesh.generation.scvt.Request` for the arguments.
+def _require_one_start(request: MeshRequest, resume: bool) -> None:
+    if (request.start, request.method, resume) != (MeshRequest.start, MeshRequest.method, False):
+        raise MeshError("--start, --method and --resume do not go with --nested, which starts from that mesh")
 
-    `density` is a name, the name of a NetCDF file, or any callable (see `mesh.density.named`). It decides, with the
-    method, on the tolerance where none is given. Starts from the bisected icosahedron where that has this number of
-    cells, else from the Fibonacci spiral.
-    """
-    function = find_density(os.fspath(density)) if isinstance(density, str | os.PathLike) else density
-    cells, seed = plain_count("the number of cells", cells), plain_count("the seed", seed)
-    max_iterations = plain_count("the largest number of iterations", max_iterations)
-    if tolerance is not None:
-        tolerance = plain_number("the tolerance", tolerance)
-    request = Request(cells, start, method, function, seed)
-    limits = default_limits(function, method, tolerance, max_iterations)
-    return mesh_of(generate_scvt(request, limits, callback), function)
+
+def _from_start(
+    points: Array | None, request: MeshRequest, density: Density, limits: Limits, callback: Callback
+) -> ScvtResult:
+    """Converged generators, from `points` (n, 3) that were kept if there are any."""
+    if points is None:
+        return converge(request, density, limits, callback)
+    result = optimize(points, None, request.method, density, limits, callback, request.seed)
+    check_converged(result, limits)
+    return result
+
+
+def _refined(
+    coarse: VoronoiMesh, request: MeshRequest, density: Density, limits: Limits, callback: Callback | None
+) -> ScvtResult:
+    points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
+    return nested_scvt(points, triangles, density, request.cells, limits, callback, request.seed)
+
+
+def _well_centered(result: ScvtResult, density: Density, seconds: float) -> WellCentered:
+    """The result without obtuse triangles; raise `MeshError` where some are left after so many `seconds`."""
+    begin = time.perf_counter()
+    better = well_center(result.points, result.triangles, density, result.fixed, seconds=seconds)
+    if better.least_quality < GOAL:
+        in_time = time.perf_counter() - begin < seconds
+        advice = "try another start or seed, or converge it further" if in_time else "allow more time"
+        raise MeshError(
+            f"the mesh of {len(better.points)} cells keeps a triangle of quality {better.least_quality:.3f}, below "
+            f"{GOAL}; {advice}"
+        )
+    return better
+
+
+def _all_of(callbacks: Sequence[Callback]) -> Callback:
+    """A callback that calls all `callbacks` in turn."""
+
+    def call(iterate: Iterate) -> None:
+        for each in callbacks:
+            each(iterate)
+
+    return call

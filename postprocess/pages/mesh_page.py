@@ -5,7 +5,8 @@ from pathlib import Path
 from mesh.density.named import NAMED
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits
-from mesh.generation.scvt import Request, generate_scvt
+from mesh.generation.scvt import generate_scvt
+from mesh.mesh_request import MeshRequest
 from postprocess.pages.mesh_report import (
     CIRCLE_CELLS,
     PUBLISHED_CIRCLE,
@@ -45,11 +46,10 @@ def nested_meshes(tell: Tell) -> list[Start]:
     box = NAMED["refined-box"]
     meshes = []
     for start, seed in NESTED_STARTS:
-        coarse = generate_scvt(Request(COARSE_CELLS, start, seed=seed))
-        request = Request(NESTED_CELLS, density=box, seed=seed)
+        coarse = generate_scvt(MeshRequest(COARSE_CELLS, start=start, seed=seed))
         limits = Limits(VARIABLE_TOLERANCE)
         result = nested_scvt(coarse.points, coarse.triangles, box, NESTED_CELLS, limits, seed=seed)
-        meshes.append(measured(start, request, result))
+        meshes.append(measured(start, seed, result, box))
         tell(f"nested mesh from {start} {seed}: least q {meshes[-1].quality.q_min:.4f}")
     return meshes
 

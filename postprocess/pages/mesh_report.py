@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from mesh.density.named import NAMED
+from mesh.density.named import Density, uniform
 from mesh.discrete.quality import Quality, mesh_quality
 from mesh.generation.optimizer import History, Limits, ScvtResult
 from mesh.generation.pipeline import mesh_of
-from mesh.generation.scvt import Request, generate_scvt, optimize, starting_mesh
+from mesh.generation.scvt import density_of, generate_scvt, optimize, starting_mesh
 from mesh.geometry.sphere import mean_spacing, normalize
+from mesh.mesh_request import MeshRequest
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.plots import draw_mollweide, draw_orthographic
 from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures
@@ -65,35 +66,33 @@ class Start:
         return int(np.count_nonzero(self.mesh.n_edges_on_cell == 5)) - 12
 
 
-def converge_from(request: Request, tolerance: float) -> Start:
+def converge_from(request: MeshRequest) -> Start:
     """Converge one mesh and measure it."""
-    result = generate_scvt(request, Limits(tolerance))
-    return measured(request.start or "icosahedral", request, result)
+    return measured(request.start or "icosahedral", request.seed, generate_scvt(request), density_of(request))
 
 
-def measured(start: str, request: Request, result: ScvtResult) -> Start:
+def measured(start: str, seed: int, result: ScvtResult, density: Density = uniform) -> Start:
     """The mesh of a result with its quality."""
-    mesh = mesh_of(result, request.density)
-    return Start(start, request.seed, mesh, mesh_quality(mesh), result.history)
+    mesh = mesh_of(result, density)
+    return Start(start, seed, mesh, mesh_quality(mesh), result.history)
 
 
 def circle_meshes(tolerance: float, tell: Tell) -> list[Start]:
     """Refined-circle meshes from all `CIRCLE_STARTS`."""
     meshes = []
     for start, seed in CIRCLE_STARTS:
-        request = Request(CIRCLE_CELLS, start, density=NAMED["refined-circle"], seed=seed)
-        meshes.append(converge_from(request, tolerance))
+        meshes.append(converge_from(MeshRequest(CIRCLE_CELLS, "refined-circle", start, tolerance=tolerance, seed=seed)))
         tell(f"refined-circle from {start} {seed}: {meshes[-1].history.iterations} iterations")
     return meshes
 
 
 def random_meshes(tolerance: float, tell: Tell) -> list[Start]:
     """Uniform meshes: the icosahedral one, those from it after a shake, and those from random points."""
-    meshes = [converge_from(Request(RANDOM_CELLS), tolerance)]
+    meshes = [converge_from(MeshRequest(RANDOM_CELLS, tolerance=tolerance))]
     for seed in SHAKEN_SEEDS:
         meshes.append(_shaken(meshes[0], seed, tolerance))
     for seed in RANDOM_SEEDS:
-        meshes.append(converge_from(Request(RANDOM_CELLS, "random", seed=seed), tolerance))
+        meshes.append(converge_from(MeshRequest(RANDOM_CELLS, start="random", tolerance=tolerance, seed=seed)))
     for mesh in meshes:
         tell(f"{RANDOM_CELLS} cells, {mesh.start} {mesh.seed}: {mesh.dislocations} dislocations")
     return meshes
@@ -103,9 +102,8 @@ def _shaken(start: Start, seed: int, tolerance: float) -> Start:
     """Displace all generators of a converged mesh at random and converge it again."""
     points = start.mesh.cell_points
     step = SHAKE * mean_spacing(len(points)) * np.random.default_rng(seed).normal(size=points.shape)
-    request = Request(len(points), seed=seed)
     result = optimize(normalize(points + step), limits=Limits(tolerance))
-    return measured("icosahedral, shaken", request, result)
+    return measured("icosahedral, shaken", seed, result)
 
 
 def optimizer_histories(tell: Tell) -> dict[str, History]:
@@ -115,11 +113,12 @@ def optimizer_histories(tell: Tell) -> dict[str, History]:
     """
     histories = {}
     for method, limits in OPTIMIZER_LIMITS.items():
-        request = Request(OPTIMIZER_CELLS, None if method == "multilevel" else "random", method)
         if method == "multilevel":
-            histories[method] = generate_scvt(request, limits).history
+            request = MeshRequest(OPTIMIZER_CELLS, method=method, tolerance=limits.tolerance)
+            histories[method] = generate_scvt(request).history
         else:
-            histories[method] = optimize(*starting_mesh(request), method, limits=limits).history
+            start = starting_mesh(OPTIMIZER_CELLS, "random")
+            histories[method] = optimize(*start, method, limits=limits).history
         tell(f"{method}: residual {histories[method].residual[-1]:.1e} after {histories[method].iterations} iterations")
     return histories
 

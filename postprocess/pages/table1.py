@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from mesh.discrete.build import mesh_from_points
 from mesh.discrete.quality import Quality, mesh_quality
 from mesh.generation.generators import icosahedral_mesh
-from mesh.generation.optimizer import Limits
-from mesh.generation.scvt import Request, generate_scvt
+from mesh.generation.scvt import generate_scvt
+from mesh.mesh_request import MeshRequest
 from mesh.triangulation.ordering import renumber
 from swe.errors import InputError
 
@@ -62,7 +62,7 @@ def table1(max_level: int, tolerance: float, tell: Callable[[Row], None] | None 
     rows = []
     for level in range(FIRST_LEVEL, max_level + 1):
         bisection = mesh_quality(mesh_from_points(*renumber(*icosahedral_mesh(level - 1))))
-        result = generate_scvt(Request(bisection.cells), Limits(tolerance))
+        result = generate_scvt(MeshRequest(bisection.cells, tolerance=tolerance))
         quality = mesh_quality(mesh_from_points(result.points, result.triangles))
         rows.append(Row(level, bisection, quality, result.history.iterations, result.history.seconds[-1]))
         if tell is not None:

@@ -3,12 +3,13 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from mesh.density.named import NAMED, Density, uniform
+from mesh.density.named import NAMED
 from mesh.discrete.build import mesh_from_points
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits
-from mesh.generation.pipeline import UNIFORM_TOLERANCE, VARIABLE_TOLERANCE, mesh_of
-from mesh.generation.scvt import Request, generate_scvt, starting_mesh
+from mesh.generation.pipeline import generate_mesh, mesh_of
+from mesh.generation.scvt import UNIFORM_TOLERANCE, VARIABLE_TOLERANCE, generate_scvt, starting_mesh
+from mesh.mesh_request import MeshRequest
 from mesh.voronoi_mesh import VoronoiMesh
 
 STOPPED_RESIDUALS = (2e-2, 1e-2, 1e-3)
@@ -27,7 +28,7 @@ class Family:
 
 
 def _bisection(cells: int) -> VoronoiMesh:
-    points, triangles = starting_mesh(Request(cells, "icosahedral"))
+    points, triangles = starting_mesh(cells, "icosahedral")
     return mesh_from_points(points, triangles)
 
 
@@ -37,22 +38,16 @@ def _scvt(
     """A function that makes an SCVT, the first iterate whose residual is below `tolerance`."""
 
     def make(cells: int) -> VoronoiMesh:
-        function = _density(density)
-        result = generate_scvt(Request(cells, start, method, function), Limits(tolerance))
-        return mesh_of(result, function)
+        return generate_mesh(MeshRequest(cells, density, start, method, tolerance)).mesh
 
     return make
 
 
 def _nested(cells: int) -> VoronoiMesh:
-    coarse = generate_scvt(Request((cells - 2) // NESTED_SHARE + 2))
-    density = _density("refined-box")
+    coarse = generate_scvt(MeshRequest((cells - 2) // NESTED_SHARE + 2))
+    density = NAMED["refined-box"]
     result = nested_scvt(coarse.points, coarse.triangles, density, limits=Limits(VARIABLE_TOLERANCE))
     return mesh_of(result, density)
-
-
-def _density(name: str) -> Density:
-    return uniform if name == "uniform" else NAMED[name]
 
 
 FAMILIES = {

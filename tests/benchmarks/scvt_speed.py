@@ -29,16 +29,17 @@ begin = time.perf_counter()
 import numpy as np
 from mesh import mesh_from_points, write_mesh
 from mesh.generation.optimizer import Limits
-from mesh.generation.scvt import Request, generate_scvt, optimize, starting_mesh
+from mesh.generation.scvt import generate_scvt, optimize, starting_mesh
+from mesh.mesh_request import MeshRequest
 
 cells, tolerance, path = int(sys.argv[1]), float(sys.argv[2]), sys.argv[3]
-result = generate_scvt(Request(cells), Limits(tolerance))
+result = generate_scvt(MeshRequest(cells, tolerance=tolerance))
 converged = time.perf_counter() - begin
 write_mesh(mesh_from_points(result.points, result.triangles), path)
 total = time.perf_counter() - begin
 peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 per_iteration = 1e9 * np.median(np.diff(result.history.seconds)) / cells
-start = starting_mesh(Request(cells))
+start = starting_mesh(cells)
 tracemalloc.start()
 optimize(*start, limits=Limits(iterations=2))
 memory = tracemalloc.get_traced_memory()[1] / cells

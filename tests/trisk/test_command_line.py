@@ -337,7 +337,7 @@ def test_output_goes_with_the_table(trisk, tmp_path: Path) -> None:
 
 
 def test_an_unknown_format_is_refused_before_the_work(trisk, tmp_path: Path, monkeypatch) -> None:
-    monkeypatch.setattr("trisk.arguments.generate.find_density", lambda *_: pytest.fail("the work began"))
+    monkeypatch.setattr("mesh.generation.scvt.find_density", lambda *_: pytest.fail("the work began"))
     code, _, err = trisk("mesh", "--cells", 42, "--format", "hdf5", "-o", tmp_path / "mesh.nc")
     assert code == 2
     assert "hdf5" in err

@@ -4,8 +4,10 @@ from pathlib import Path
 
 import typer
 
-from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh
-from mesh.generation.pipeline import UNIFORM_TOLERANCE
+from mesh import MeshError, VoronoiMesh, read_mesh
+from mesh.generation.pipeline import generate_mesh
+from mesh.generation.scvt import limits_of
+from mesh.mesh_request import MeshRequest
 from swe.output.files import MESH_FILE
 from trisk.report.bars import convergence_bar
 
@@ -21,8 +23,9 @@ def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bo
         raise typer.BadParameter("give either --mesh FILE or --cells N")
     if recompute_metrics:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
-    with convergence_bar(UNIFORM_TOLERANCE, not quiet) as show:
-        return scvt_mesh(cells, callback=show)
+    request = MeshRequest(cells)
+    with convergence_bar(limits_of(request).tolerance, not quiet) as show:
+        return generate_mesh(request, show).mesh
 
 
 def mesh_of_run(directory: Path, cells: int | None) -> VoronoiMesh | None:

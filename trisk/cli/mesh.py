@@ -1,11 +1,35 @@
 """`trisk mesh`: generate a mesh."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
+from importlib.util import find_spec
 from pathlib import Path
-from typing import Annotated
+from runpy import run_path
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from trisk.cli.options import Quiet
+
+if TYPE_CHECKING:
+    from mesh.generation.checkpoint import CheckpointKeeper
+    from mesh.generation.optimizer import Callback
+    from mesh.mesh_request import MeshRequest
+
+
+def _defaults() -> Any:
+    """The class that describes a mesh, for the defaults of its fields.
+
+    Its module runs by itself, as no help would be quick that imports the package.
+    """
+    package = find_spec("mesh")
+    assert package is not None
+    assert package.origin is not None
+    return run_path(str(Path(package.origin).with_name("mesh_request.py")))["MeshRequest"]
+
+
+DEFAULTS = _defaults()
 
 
 def mesh(
@@ -18,32 +42,34 @@ def mesh(
         typer.Option(
             "--density", help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc."
         ),
-    ] = "uniform",
+    ] = DEFAULTS.density,
     density_variable: Annotated[
         str, typer.Option("--density-variable", help="Variable of FILE.nc that holds the density.")
-    ] = "density",
-    density_floor: Annotated[float, typer.Option("--density-floor", help="Raise smaller values of the field.")] = 0.0,
+    ] = DEFAULTS.density_variable,
+    density_floor: Annotated[float, typer.Option("--density-floor", help="Raise smaller values of the field.")] = (
+        DEFAULTS.density_floor
+    ),
     density_power: Annotated[
         float, typer.Option("--density-power", help="Power of the field that is the density; -4 for cell widths.")
-    ] = 1.0,
+    ] = DEFAULTS.density_power,
     density_smoothing: Annotated[
         int, typer.Option("--density-smoothing", help="Passes of smoothing of the field, before the power.")
-    ] = 0,
+    ] = DEFAULTS.density_smoothing,
     start: Annotated[
         str | None,
         typer.Option("--start", help="icosahedral, fibonacci, random or random-root; the first where it exists."),
-    ] = None,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.", min=0)] = 0,
+    ] = DEFAULTS.start,
+    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.", min=0)] = DEFAULTS.seed,
     method: Annotated[
         str, typer.Option("--method", help="lbfgs, lloyd, multilevel, probabilistic or macqueen.")
-    ] = "lbfgs",
+    ] = DEFAULTS.method,
     nested: Annotated[
         Path | None, typer.Option("--nested", help="Refine this mesh where the density asks for it, keep the rest.")
     ] = None,
     well_centered: Annotated[
         bool,
         typer.Option("--well-centred", help="Trade a little centroidality for a mesh without obtuse triangles."),
-    ] = False,
+    ] = DEFAULTS.well_centered,
     tolerance: Annotated[
         float | None,
         typer.Option(
@@ -51,10 +77,12 @@ def mesh(
             help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density, and more for methods "
             "that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
         ),
-    ] = None,
-    max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = 10_000,
-    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long, all in all.")] = float(
-        "inf"
+    ] = DEFAULTS.tolerance,
+    max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = (
+        DEFAULTS.max_iterations
+    ),
+    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long, all in all.")] = (
+        DEFAULTS.max_seconds
     ),
     resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
     file_format: Annotated[
@@ -64,17 +92,59 @@ def mesh(
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh.density.gridded import Shaping
-    from mesh.generation.pipeline import default_limits
-    from trisk.arguments.generate import MeshOptions, generate
-    from trisk.arguments.outputs import command_line
-    from trisk.report.summaries import print_quality
+    from mesh import read_mesh, write_mesh
+    from mesh.files.io import require_format
+    from mesh.generation.pipeline import generate_mesh
+    from mesh.generation.scvt import limits_of
+    from mesh.mesh_request import MeshRequest
+    from trisk.arguments.outputs import command_line, require_possible_file
+    from trisk.report.summaries import print_quality, tell_of_centring
 
-    limits = default_limits(density, method, tolerance, max_iterations, max_seconds)
-    shaping = Shaping(density_floor, density_power, density_smoothing)
-    options = MeshOptions(
-        cells, density, density_variable, shaping, start, seed, method, nested, well_centered, limits, resume, quiet
+    request = MeshRequest(
+        cells=cells,
+        density=density,
+        start=start,
+        method=method,
+        tolerance=tolerance,
+        max_iterations=max_iterations,
+        seed=seed,
+        well_centered=well_centered,
+        max_seconds=max_seconds,
+        density_variable=density_variable,
+        density_floor=density_floor,
+        density_power=density_power,
+        density_smoothing=density_smoothing,
     )
-    result = generate(options, output, command_line(), file_format)
+    limits = limits_of(request)
+    require_format(file_format)
+    require_possible_file(output)
+    if nested is not None:
+        # Generators and triangles serve, whatever else the file holds.
+        request = replace(request, nested=read_mesh(nested, recompute_metrics=True))
+    with _progress(request, output, limits.tolerance, quiet) as (show, keeper):
+        made = generate_mesh(request, show, keeper, resume)
+        if made.centring is not None and not quiet:
+            tell_of_centring(made.centring)
+        write_mesh(made.mesh, output, command_line(), file_format)
     if not quiet:
-        print_quality(result, str(output))
+        print_quality(made.mesh, str(output))
+
+
+@contextmanager
+def _progress(
+    request: "MeshRequest", output: Path, tolerance: float, quiet: bool
+) -> "Iterator[tuple[Callback, CheckpointKeeper]]":
+    """Give the bar and the keeper of the checkpoint, which outlasts only what fails or is interrupted."""
+    from mesh.generation.checkpoint import CheckpointKeeper, checkpoint_path
+    from trisk.report.bars import convergence_bar
+
+    path = checkpoint_path(output)
+    keeper = CheckpointKeeper(path, request)
+    with convergence_bar(tolerance, not quiet) as show:
+        try:
+            with keeper:
+                yield show, keeper
+        except BaseException:
+            if keeper.has_points:
+                typer.echo(f"the best points are kept in {path}; go on with --resume", err=True)
+            raise

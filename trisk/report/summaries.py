@@ -3,11 +3,13 @@
 import math
 from pathlib import Path
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
 from mesh import VoronoiMesh
 from mesh.discrete.quality import quality_and_note
+from mesh.generation.well_centered import WellCentered
 from swe.output.files import DIAGNOSTICS_FILE, load_record, read_series
 
 
@@ -28,6 +30,14 @@ def print_quality(mesh: VoronoiMesh, name: str) -> None:
         ("largest / smallest cell area", f"{measured.area_ratio:.6f}"),
     ]
     _print_table(f"Quality of {name}", rows)
+
+
+def tell_of_centring(centring: WellCentered) -> None:
+    """Print, in a line, what a mesh without obtuse triangles gained and lost."""
+    typer.echo(
+        f"well-centred: the least triangle quality is {centring.least_quality:.3f}, and the residual rose from "
+        f"{centring.residual_before:.1e} to {centring.residual:.1e} mean spacings"
+    )
 
 
 def print_run(directory: Path) -> None:

@@ -11,7 +11,7 @@ from mesh.density.named import NAMED, RefinedBox, RefinedCircle, SmoothTransitio
 from mesh.density.record import source_of
 from mesh.generation.generators import random_points
 from mesh.generation.optimizer import RELATIVE_QUADRATURE_ERROR, Limits, Optimizer
-from mesh.generation.scvt import Request, optimize, starting_mesh
+from mesh.generation.scvt import optimize, starting_mesh
 from mesh.geometry.sphere import fibonacci_points, from_lonlat, normalize, to_lonlat
 from mesh.integrals.moments import masses_and_moments
 from mesh.integrals.weighted_moments import WeightedCells
@@ -141,8 +141,9 @@ def test_refined_circle_converges_with_the_right_widths(start: str) -> None:
 @pytest.mark.parametrize("method", ["lbfgs", "lloyd"])
 def test_energy_never_rises_above_the_error_of_its_quadrature(method: str) -> None:
     limits = Limits(1e-4, iterations=300)
-    request = Request(642, "random", method, NAMED["refined-circle"])
-    energy = np.array(optimize(*starting_mesh(request), method, request.density, limits).history.energy)
+    density = NAMED["refined-circle"]
+    start = starting_mesh(642, "random", density)
+    energy = np.array(optimize(*start, method, density, limits).history.energy)
     assert np.all(energy <= (1.0 + RELATIVE_QUADRATURE_ERROR) * np.minimum.accumulate(energy))
     assert energy[-1] < 0.9 * energy[0]
     if method == "lloyd":

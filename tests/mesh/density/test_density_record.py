@@ -13,9 +13,10 @@ from mesh.discrete.quality import quality_and_note
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits
 from mesh.generation.pipeline import mesh_of
-from mesh.generation.scvt import Request, generate_scvt
+from mesh.generation.scvt import generate_scvt
 from mesh.generation.well_centered import well_center
 from mesh.geometry.sphere import normalize
+from mesh.mesh_request import MeshRequest
 
 TOLERANCE = 3e-5
 LATITUDE, LONGITUDE = np.arange(-90.0, 91.0, 10.0), np.arange(0.0, 360.0, 10.0)
@@ -93,7 +94,7 @@ def test_names_of_densities() -> None:
 
 def test_held_generators_do_not_count(tmp_path: Path) -> None:
     box = RefinedBox()
-    coarse = generate_scvt(Request(162))
+    coarse = generate_scvt(MeshRequest(162))
     result = nested_scvt(coarse.points, coarse.triangles, box, limits=Limits(1e-5))
     read = reread(mesh_of(result, box), tmp_path / "mesh.nc")
     assert result.fixed is not None
@@ -107,7 +108,7 @@ def test_held_generators_do_not_count(tmp_path: Path) -> None:
 
 
 def test_mesh_that_tells_nothing_has_the_density_of_its_centres() -> None:
-    points = generate_scvt(Request(162)).points
+    points = generate_scvt(MeshRequest(162)).points
     assert density_of(mesh_from_points(points)) == (uniform, "")
     foreign = mesh_from_points(points, density=lambda x: 2.0 + x[:, 0])
     density, note = density_of(foreign)

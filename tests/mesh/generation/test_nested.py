@@ -5,14 +5,15 @@ from mesh import MeshError, mesh_from_points, mesh_quality
 from mesh.density.named import RefinedBox
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits, ScvtResult
-from mesh.generation.scvt import Request, generate_scvt
+from mesh.generation.scvt import generate_scvt
+from mesh.mesh_request import MeshRequest
 
 BOX = RefinedBox()
 
 
 @pytest.fixture(scope="module")
 def coarse() -> ScvtResult:
-    return generate_scvt(Request(642))
+    return generate_scvt(MeshRequest(642))
 
 
 def test_generators_beyond_the_transition_stay(coarse: ScvtResult) -> None:

@@ -4,13 +4,13 @@ import pytest
 from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.density.named import NAMED, uniform
 from mesh.generation.optimizer import Limits
-from mesh.generation.pipeline import default_tolerance
 from mesh.generation.probabilistic import MACQUEEN, Blend, probabilistic_lloyd
-from mesh.generation.scvt import Request, generate_scvt, starting_mesh
+from mesh.generation.scvt import default_tolerance, generate_scvt, starting_mesh
+from mesh.mesh_request import MeshRequest
 
 
 def start(count: int) -> np.ndarray:
-    return starting_mesh(Request(count, start="random"))[0]
+    return starting_mesh(count, "random")[0]
 
 
 def test_residual_and_energy_fall() -> None:
@@ -65,6 +65,6 @@ def test_density_attracts_generators() -> None:
 
 def test_unreached_tolerance_and_wrong_weights_are_refused() -> None:
     with pytest.raises(MeshError, match="allow more iterations"):
-        generate_scvt(Request(100, method="probabilistic"), Limits(1e-6, 2))
+        generate_scvt(MeshRequest(100, method="probabilistic", tolerance=1e-6, max_iterations=2))
     with pytest.raises(MeshError, match="at least one sample and weights between 0 and 1"):
         Blend(alpha=1.5)

@@ -13,9 +13,10 @@ from mesh import MeshError, mesh_quality, scvt_mesh
 from mesh.density.named import RefinedBox
 from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Iterate, Limits, ScvtResult
-from mesh.generation.scvt import Request, generate_scvt, optimize
+from mesh.generation.scvt import generate_scvt, optimize
 from mesh.geometry.sphere import arc_length, dot, fibonacci_points, normalize
 from mesh.integrals.moments import masses_and_moments
+from mesh.mesh_request import MeshRequest
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.moving import Triangulation
 from tests.mesh.plain_moments import mass_and_moment
@@ -92,7 +93,7 @@ def test_energy_never_rises_and_the_residual_is_reached(method: str, start: str)
 
 
 def test_all_methods_find_the_same_mesh_and_lbfgs_sooner() -> None:
-    results = {method: generate_scvt(Request(642, method=method)) for method in ("lbfgs", "lloyd", "multilevel")}
+    results = {method: generate_scvt(MeshRequest(642, method=method)) for method in ("lbfgs", "lloyd", "multilevel")}
     for result in results.values():
         np.testing.assert_allclose(result.points, results["lbfgs"].points, atol=1e-8)
     iterations = {method: result.history.iterations for method, result in results.items()}
@@ -147,7 +148,7 @@ def test_quality_of_converged_meshes(cells: int) -> None:
 
 def test_ten_thousand_cells_converge_in_few_iterations() -> None:
     """The specification allows 200; the multilevel preconditioner needs about 30."""
-    assert generate_scvt(Request(10242), Limits(1e-8)).history.iterations < 50
+    assert generate_scvt(MeshRequest(10242, tolerance=1e-8)).history.iterations < 50
 
 
 def test_round_off_ends_the_descent() -> None:
@@ -158,7 +159,7 @@ def test_round_off_ends_the_descent() -> None:
 
 def test_callback_sees_every_iteration() -> None:
     seen: list[Iterate] = []
-    result = generate_scvt(Request(42), callback=seen.append)
+    result = generate_scvt(MeshRequest(42), callback=seen.append)
     assert [iterate.number for iterate in seen] == list(range(result.history.iterations + 1))
     assert [iterate.residual for iterate in seen] == result.history.residual
     np.testing.assert_array_equal(seen[-1].points, result.points)
@@ -172,15 +173,15 @@ def test_limits_stop_the_iteration() -> None:
 
 def test_unreachable_tolerance_and_wrong_requests_are_refused() -> None:
     with pytest.raises(MeshError, match=r"after 3 iterations and does not reach the tolerance 1.0e-08: allow more"):
-        generate_scvt(Request(100), Limits(iterations=3))
+        generate_scvt(MeshRequest(100, max_iterations=3))
     with pytest.raises(MeshError, match="round-off allows no further step; ask for a larger tolerance"):
-        generate_scvt(Request(100), Limits(1e-18))
+        generate_scvt(MeshRequest(100, tolerance=1e-18))
     with pytest.raises(MeshError, match="the tolerance is 0 mean spacings; it must be positive"):
         Limits(0.0)
     with pytest.raises(MeshError, match="no optimisation method named 'newton'"):
-        generate_scvt(Request(100, method="newton"))
+        generate_scvt(MeshRequest(100, method="newton"))
     with pytest.raises(MeshError, match="multilevel method bisects the icosahedron, which gives no mesh of 100 cells"):
-        generate_scvt(Request(100, method="multilevel"))
+        generate_scvt(MeshRequest(100, method="multilevel"))
 
 
 @pytest.fixture
@@ -196,13 +197,13 @@ def seconds(monkeypatch: pytest.MonkeyPatch) -> Iterator[int]:
 def test_seconds_are_for_all_levels_together(seconds: Iterator[int]) -> None:
     """Each of the three levels would take 60 seconds."""
     with pytest.raises(MeshError, match="allow more time"):
-        generate_scvt(Request(10242, method="multilevel"), Limits(1e-18, seconds=60.0))
+        generate_scvt(MeshRequest(10242, method="multilevel", tolerance=1e-18, max_seconds=60.0))
     assert 60 <= next(seconds) <= 75
 
 
 def test_seconds_are_for_all_reseedings_together(seconds: Iterator[int]) -> None:
     """Each of the eight begins with iterate 0; with little more time than the first descent took, the second ends."""
-    coarse = generate_scvt(Request(162))
+    coarse = generate_scvt(MeshRequest(162))
     numbers: list[int] = []
 
     def refine(limits: Limits) -> int:

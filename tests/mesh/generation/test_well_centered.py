@@ -6,8 +6,9 @@ from mesh.density.named import NAMED
 from mesh.discrete.quality import triangle_quality
 from mesh.generation.optimizer import Limits, ScvtResult
 from mesh.generation.reseed import SHAKEN_RINGS, reseed
-from mesh.generation.scvt import Request, generate_scvt, optimize
+from mesh.generation.scvt import generate_scvt, optimize
 from mesh.generation.well_centered import GOAL, _penalty, well_center
+from mesh.mesh_request import MeshRequest
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.ordering import sort_triangles
 from mesh.triangulation.triangle_quality import near_bad_triangles, qualities
@@ -17,7 +18,7 @@ CIRCLE = NAMED["refined-circle"]
 
 @pytest.fixture(scope="module")
 def circle() -> ScvtResult:
-    return generate_scvt(Request(2562, "random-root", density=CIRCLE, seed=1), Limits(1e-5))
+    return generate_scvt(MeshRequest(2562, CIRCLE, "random-root", tolerance=1e-5, seed=1))
 
 
 def test_compiled_quality_is_that_of_the_mesh(circle: ScvtResult) -> None:
@@ -60,7 +61,7 @@ def test_most_generators_stay(circle: ScvtResult) -> None:
 
 
 def test_good_meshes_are_left_alone() -> None:
-    result = generate_scvt(Request(642))
+    result = generate_scvt(MeshRequest(642))
     better = well_center(result.points, result.triangles)
     np.testing.assert_array_equal(better.points, result.points)
     assert better.residual == better.residual_before
@@ -72,7 +73,9 @@ def test_bad_surroundings_grow_by_rings(circle: ScvtResult) -> None:
 
 
 def test_reseeding_never_makes_the_mesh_worse() -> None:
-    start = optimize(np.ascontiguousarray(generate_scvt(Request(300, "random", seed=2), Limits(1e-5)).points))
+    start = optimize(
+        np.ascontiguousarray(generate_scvt(MeshRequest(300, start="random", tolerance=1e-5, seed=2)).points)
+    )
     fixed = np.zeros(300, bool)
 
     def converge(points: np.ndarray) -> ScvtResult:
@@ -92,7 +95,7 @@ def test_no_round_begins_without_time(circle: ScvtResult) -> None:
 
 
 def test_only_generators_near_bad_triangles_are_shaken() -> None:
-    start = generate_scvt(Request(300, "random", seed=2), Limits(1e-4))
+    start = generate_scvt(MeshRequest(300, start="random", tolerance=1e-4, seed=2))
     fixed = np.arange(300) % 7 == 0
     near = near_bad_triangles(start.points, start.triangles, 0.9, SHAKEN_RINGS) & ~fixed
     assert 0 < near.sum() < (~fixed).sum()

@@ -3,9 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesh.density.named import NAMED
 from mesh.generation.optimizer import Limits
-from mesh.generation.scvt import Request
+from mesh.mesh_request import MeshRequest
 from postprocess.pages import mesh_page, mesh_report
 from postprocess.pages.mesh_report import (
     Start,
@@ -53,8 +52,7 @@ def test_levels_beyond_the_table_are_refused() -> None:
 
 @pytest.fixture(scope="module")
 def meshes() -> list[Start]:
-    density = NAMED["refined-circle"]
-    return [converge_from(Request(300, "random", density=density, seed=k), 1e-4) for k in (0, 1)]
+    return [converge_from(MeshRequest(300, "refined-circle", "random", tolerance=1e-4, seed=k)) for k in (0, 1)]
 
 
 def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> None:

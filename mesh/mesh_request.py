@@ -1,0 +1,67 @@
+"""What a mesh that is to be generated is asked to be, with the defaults of all that may be left out.
+
+This module imports nothing when it runs, so that the command line can tell its defaults without loading the package.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    import os
+    from collections.abc import Callable
+
+    from mesh.arrays import Array
+    from mesh.voronoi_mesh import VoronoiMesh
+
+
+@dataclass(frozen=True)
+class MeshRequest:
+    """A mesh to be generated: `scvt_mesh` and `trisk mesh` take these by the same names.
+
+    Attributes
+    ----------
+    cells
+        Number of cells. A `nested` mesh may leave it to the density.
+    density
+        A name, the name of a NetCDF file, or any callable (see `mesh.density.named`).
+    start
+        Where generators start (see `mesh.generation.generators.starting_points`); by default from the bisected
+        icosahedron where that has this number of cells, else from the Fibonacci spiral.
+    method
+        `lbfgs`, `lloyd`, `multilevel` (L-BFGS on icosahedral meshes from coarse to fine), `probabilistic` or
+        `macqueen`.
+    tolerance
+        Largest distance of a generator from the centroid of its cell, in mean spacings; by default as small as the
+        density and the method allow.
+    max_iterations
+        Iterations after which an optimisation gives up.
+    seed
+        Of all that is random.
+    nested
+        A mesh to refine where the density asks for it, instead of a start; all other generators stay.
+    well_centered
+        Whether to trade a little centroidality for a mesh without obtuse triangles.
+    max_seconds
+        Time after which the generation gives up, all in all.
+    density_variable
+        Variable of a density file.
+    density_floor, density_power, density_smoothing
+        What is done to the field of a density file (see `mesh.density.gridded.Shaping`).
+    """
+
+    cells: int | None = None
+    density: str | os.PathLike[str] | Callable[[Array], Array] = "uniform"
+    start: str | None = None
+    method: str = "lbfgs"
+    tolerance: float | None = None
+    max_iterations: int = 10_000
+    seed: int = 0
+    nested: VoronoiMesh | None = None
+    well_centered: bool = False
+    max_seconds: float = float("inf")
+    density_variable: str = "density"
+    density_floor: float = 0.0
+    density_power: float = 1.0
+    density_smoothing: int = 0
