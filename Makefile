@@ -10,7 +10,7 @@ MUTANTS := 200
 SEED := 1
 
 .SECONDARY:
-.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references clean
+.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -77,6 +77,9 @@ references: $(VENV)/installed-dev  ## The stored solutions of the spectral model
 	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/reference/stored/williamson5.nc
 	$(BIN)/trisk reference williamson6 --truncation 170 --damping-hours 24 -o postprocess/reference/stored/williamson6.nc
 	$(BIN)/trisk reference galewsky --truncation 255 -o postprocess/reference/stored/galewsky.nc
+
+mesh-page: $(VENV)/installed-dev  ## docs/meshes made anew; an hour
+	$(BIN)/python docs/tools/mesh_page.py docs/meshes --max-level 9
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

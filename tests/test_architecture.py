@@ -3,6 +3,7 @@
 import ast
 import graphlib
 from collections import Counter
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,7 @@ ROOMS = {
     "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"],
     "swe": ["", "parallel", "equations", "tiles", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
-    "postprocess": ["", "runs", "reference", "compare", "figures", "studies", "pages"],
+    "postprocess": ["", "runs", "reference", "compare", "figures", "studies"],
     "trisk": ["report", "arguments", "cli", ""],
 }
 """Rooms of each package; one may use those that stand before it. The package itself is the first."""
@@ -138,6 +139,19 @@ def test_only_files_of_meshes_know_which_arrays_count_from_one() -> None:
         if isinstance(node, ast.Attribute) and node.attr == "is_index"
     }
     assert users == {"mesh/files/io.py", "mesh/files/mesh_file.py", "mesh/files/arrange.py"}
+
+
+def test_what_only_makes_pages_is_not_installed() -> None:
+    import tomllib
+
+    included = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]["find"]["include"]
+    folders = [path.name for path in ROOT.iterdir() if path.is_dir()]
+    assert {name for name in folders for pattern in included if fnmatch(name, pattern)} == set(LAYERS)
+    tools = {path.stem for path in (ROOT / "docs" / "tools").glob("*.py")}
+    assert tools
+    for layer in LAYERS:
+        for path in (ROOT / layer).rglob("*.py"):
+            assert not imported_packages(path.read_text()) & tools, path
 
 
 def test_version_is_the_same_everywhere() -> None:

@@ -6,6 +6,14 @@ checkout=$(pwd)
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 "$python" -m pip wheel --quiet --no-deps --wheel-dir "$folder" "$checkout"
+"$python" - "$folder"/trisk-*.whl <<'EOF'
+import sys
+import zipfile
+
+strangers = {name for name in zipfile.ZipFile(sys.argv[1]).namelist() if name.startswith(("docs/", "tests/"))}
+strangers |= {name for name in zipfile.ZipFile(sys.argv[1]).namelist() if "mesh_page" in name or "mesh_report" in name}
+assert not strangers, strangers
+EOF
 "$python" -m venv "$folder/venv"
 "$folder/venv/bin/python" -m pip install --quiet "$folder"/trisk-*.whl
 cd "$folder"

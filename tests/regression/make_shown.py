@@ -1,4 +1,4 @@
-"""Make `shown.json` anew, all that users are shown: python tests/regression/make_shown.py.
+"""Make `shown.json` anew, all that users are shown: PYTHONPATH=docs/tools python tests/regression/make_shown.py.
 
 Figures are described by `described.described`, tables and pages are text. They are made of small meshes and short runs,
 so that nothing but what is computed and drawn can change them. What they ought to be is tested elsewhere
@@ -22,6 +22,7 @@ from described import described
 from matplotlib.figure import Figure
 from rich.console import Console
 
+import mesh_report
 from cases import CASES, Galewsky, Williamson2, Williamson5, find_case
 from mesh import mesh_from_points, mesh_quality, scvt_mesh
 from mesh.generation.optimizer import History
@@ -30,12 +31,12 @@ from postprocess.compare.comparison import compare_runs, comparison_record
 from postprocess.figures.compare_maps import write_maps
 from postprocess.figures.plots import plot_run
 from postprocess.figures.spectra_figure import write_spectra_of
-from postprocess.pages import mesh_report
-from postprocess.pages.table1 import Row
 from postprocess.runs.reading import read_run
 from postprocess.studies import study_report
 from postprocess.studies.mesh_study import Plan
 from postprocess.studies.mesh_study import carry_out as carry_out_meshes
+from postprocess.studies.table1 import Row
+from postprocess.studies.table1_page import table1_lines
 from postprocess.studies.time_study import TimePlan
 from postprocess.studies.time_study import carry_out as carry_out_times
 from swe import Simulation
@@ -167,7 +168,7 @@ def _mesh_page(found: Shown) -> None:
     found.figure("mesh page: sizes", mesh_report.sizes_figure(meshes))
     found.found["mesh page: starts as text"] = mesh_report.starts_lines(starts)
     rows = [Row(2, starts[0].quality, starts[1].quality, 7, 1.25)]
-    found.found["mesh page: table 1"] = mesh_report.table1_lines(rows)
+    found.found["mesh page: table 1"] = table1_lines(rows)
 
 
 def _tables(found: Shown) -> None:

@@ -5,12 +5,19 @@ from pathlib import Path
 from rich.console import Console
 from rich.table import Table
 
-from postprocess.pages.mesh_page import UNIFORM_TOLERANCE, write_page
-from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures, table1
+from postprocess.studies.table1 import (
+    PUBLISHED_BISECTION,
+    PUBLISHED_SCVT,
+    UNIFORM_TOLERANCE,
+    Row,
+    measures,
+    table1,
+)
+from postprocess.studies.table1_page import write_table1_page
 
 
 def print_table1(max_level: int, output: Path | None) -> None:
-    """Make Table 1 up to `max_level` and print it; with `output`, write the page on mesh generation there too."""
+    """Make Table 1 up to `max_level` and print it; with `output`, write the page with it there too."""
     console = Console(width=150)
     table = Table("level", "cells", "", "bisection", "SCVT", "residual", "seconds")
     for column in table.columns:
@@ -28,4 +35,4 @@ def print_table1(max_level: int, output: Path | None) -> None:
     rows = table1(max_level, UNIFORM_TOLERANCE, add)
     console.print(table)
     if output is not None:
-        console.print(str(write_page(output, rows, lambda line: Console(stderr=True).print(line))))
+        console.print(str(write_table1_page(output, rows)))

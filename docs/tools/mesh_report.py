@@ -1,8 +1,7 @@
-"""A page on mesh generation: Table 1 made anew, variable-resolution meshes over several starts, optimisers compared."""
+"""What the page on mesh generation shows: variable-resolution meshes over several starts, optimisers compared."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
@@ -16,14 +15,11 @@ from mesh.geometry.sphere import mean_spacing, normalize
 from mesh.mesh_request import MeshRequest
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.plots import draw_mollweide, draw_orthographic
-from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures
+from postprocess.studies.table1 import LABELS, MEASURES
 
 PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)
 """Ju, Ringler and Gunzburger (2011): mu, sigma_avg, sigma_min, q_avg, q_min of the mesh of equation (12)."""
 
-QUALITY_MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
-QUALITY_LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
-PAGE_DOTS_PER_INCH = 80
 CIRCLE_CELLS = 2562
 OPTIMIZER_CELLS = 2562
 RANDOM_CELLS = 10242
@@ -197,30 +193,6 @@ def sizes_figure(meshes: dict[str, VoronoiMesh]) -> Figure:
     return figure
 
 
-def table1_lines(rows: list[Row]) -> list[str]:
-    """Table 1 in Markdown: for each level ours above the published values."""
-    lines = [
-        "| level | cells | | bisection: "
-        + ", ".join(QUALITY_LABELS)
-        + " | SCVT: "
-        + ", ".join(QUALITY_LABELS)
-        + " | residual | iterations | s |",
-        "|---|---|---|---|---|---|---|---|",
-    ]
-    for row in rows:
-        ours, theirs = (
-            " | ".join(" ".join(f"{value:.4f}" for value in values) for values in pair)
-            for pair in (
-                (measures(row.bisection), measures(row.scvt)),
-                (PUBLISHED_BISECTION[row.level], PUBLISHED_SCVT[row.level]),
-            )
-        )
-        tail = f"{row.scvt.residual:.1e} | {row.iterations} | {row.seconds:.1f}"
-        lines.append(f"| {row.level} | {row.scvt.cells} | ours | {ours} | {tail} |")
-        lines.append(f"| | | published | {theirs} | | | |")
-    return lines
-
-
 def starts_lines(meshes: list[Start]) -> list[str]:
     """Meshes over starts in Markdown."""
     lines = [
@@ -236,9 +208,3 @@ def starts_lines(meshes: list[Start]) -> list[str]:
             f"{mesh.history.iterations} | {mesh.history.energy[-1]:.6e} | {mesh.dislocations} |"
         )
     return lines
-
-
-def save(figure: Figure, folder: Path, name: str) -> str:
-    """Write a figure and give the Markdown that shows it."""
-    figure.savefig(folder / f"{name}.png", dpi=PAGE_DOTS_PER_INCH)
-    return f"![{name.replace('-', ' ')}]({name}.png)"

@@ -1,53 +1,22 @@
+"""The page on mesh generation, which only a checkout can make."""
+
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mesh_page
+import mesh_report
 from mesh.generation.optimizer import Limits
 from mesh.mesh_request import MeshRequest
-from postprocess.pages import mesh_page, mesh_report
-from postprocess.pages.mesh_report import (
-    Start,
-    converge_from,
-    distribution_figure,
-    sizes_figure,
-    starts_lines,
-    table1_lines,
-)
-from postprocess.pages.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, Row, measures, table1
-from swe.errors import InputError
-
-BISECTION_SUMS = (9.4734, 7.1572, 6.7839, 7.9061, 7.772)
-SCVT_SUMS = (10.0305, 7.3275, 6.8692, 7.9406, 7.7799)
+from mesh_report import Start, converge_from, distribution_figure, sizes_figure, starts_lines
+from postprocess.studies.table1 import Row, table1
+from postprocess.studies.table1_page import save
 
 
 @pytest.fixture(scope="module")
 def rows() -> list[Row]:
     return table1(5, 1e-6)
-
-
-def test_converged_rows_agree_with_the_published_ones_but_for_their_slips(rows: list[Row]) -> None:
-    assert [row.level for row in rows] == [2, 3, 4, 5]
-    for row in rows:
-        assert row.scvt.residual <= 1e-6
-        ours, published = np.array(measures(row.scvt)), np.array(PUBLISHED_SCVT[row.level])
-        agree = np.abs(ours - published) < 1.01e-4
-        if row.level in (2, 5):
-            assert agree.all()
-        else:
-            assert not agree.all()
-    assert rows[2].scvt.mu == pytest.approx(1.1965, abs=1e-4)  # printed as 1.1592
-
-
-def test_table_in_markdown_has_a_pair_of_lines_for_each_level(rows: list[Row]) -> None:
-    lines = table1_lines(rows)
-    assert len(lines) == 2 + 2 * len(rows)
-    assert {line.count("|") for line in lines} == {9}
-
-
-def test_levels_beyond_the_table_are_refused() -> None:
-    with pytest.raises(InputError, match="level 10 is not in Table 1"):
-        table1(10, 1e-6)
 
 
 @pytest.fixture(scope="module")
@@ -60,7 +29,7 @@ def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> Non
     assert len(lines) == 4
     assert {line.count("|") for line in lines} == {13}
     assert all(mesh.dislocations >= 0 for mesh in meshes)
-    shown = mesh_report.save(distribution_figure(meshes, (1.0,) * 5, "Title"), tmp_path, "starts")
+    shown = save(distribution_figure(meshes, (1.0,) * 5, "Title"), tmp_path, "starts")
     assert shown == "![starts](starts.png)"
     assert (tmp_path / "starts.png").stat().st_size > 5000
     left, right = sizes_figure({"one": meshes[0].mesh}).axes
@@ -93,7 +62,7 @@ def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: p
     for name in ("meshes", "sizes", "refined-circle-starts", "nested-starts", "optimizers"):
         assert f"![{name.replace('-', ' ')}]({name}.png)" in text
         assert (tmp_path / f"{name}.png").stat().st_size > 3000
-    assert "--max-level 5 -o FOLDER" in text
+    assert "docs/tools/mesh_page.py FOLDER --max-level 5" in text
     assert "5.7079, 0.9006, 0.4012, 0.9904, 0.7114" in text
     tables = [line for line in text.splitlines() if line.startswith(("| icosahedral", "| fibonacci", "| random"))]
     assert [line.split("|")[1].strip() for line in tables] == [
@@ -108,10 +77,3 @@ def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: p
     residuals = {line.split(":")[0]: float(line.split()[2]) for line in told[-3:]}
     assert max(residuals["lbfgs"], residuals["multilevel"]) < 1e-4 < residuals["lloyd"]
     assert told[-1].endswith(" after 3 iterations")
-
-
-def test_published_tables_are_those_of_the_paper() -> None:
-    """Sums over the columns, taken from the pages."""
-    for table, sums in ((PUBLISHED_BISECTION, BISECTION_SUMS), (PUBLISHED_SCVT, SCVT_SUMS)):
-        assert list(table) == list(range(2, 10))
-        np.testing.assert_allclose(np.sum(list(table.values()), axis=0), sums, atol=1e-12)

@@ -12,9 +12,13 @@ from mesh.triangulation.ordering import renumber
 from swe.errors import InputError
 
 Measures = tuple[float, float, float, float, float]
-"""mu, sigma_avg, sigma_min, q_avg, q_min."""
+MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
+LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
 
 FIRST_LEVEL = 2
+
+UNIFORM_TOLERANCE = 1e-6
+"""Residual, in mean spacings, of the SCVTs of the table: what digits it shows do not change any more."""
 
 PUBLISHED_BISECTION: dict[int, Measures] = {
     2: (1.1308, 0.9174, 0.8843, 0.9872, 0.9829),
@@ -71,5 +75,5 @@ def table1(max_level: int, tolerance: float, tell: Callable[[Row], None] | None 
 
 
 def measures(quality: Quality) -> Measures:
-    """The five measures of the table."""
+    """The five `MEASURES` of the table."""
     return quality.mu, quality.sigma_avg, quality.sigma_min, quality.q_avg, quality.q_min

@@ -1,5 +1,6 @@
-"""Write the page on mesh generation that `trisk quality --table1 -o FOLDER` makes."""
+"""Write docs/meshes, the page on mesh generation: python docs/tools/mesh_page.py FOLDER --max-level 9."""
 
+import argparse
 from pathlib import Path
 
 from mesh.density.named import NAMED
@@ -7,7 +8,7 @@ from mesh.generation.nested import nested_scvt
 from mesh.generation.optimizer import Limits
 from mesh.generation.scvt import generate_scvt
 from mesh.mesh_request import MeshRequest
-from postprocess.pages.mesh_report import (
+from mesh_report import (
     CIRCLE_CELLS,
     PUBLISHED_CIRCLE,
     RANDOM_CELLS,
@@ -21,15 +22,13 @@ from postprocess.pages.mesh_report import (
     optimizer_figure,
     optimizer_histories,
     random_meshes,
-    save,
     sizes_figure,
     starts_lines,
-    table1_lines,
 )
-from postprocess.pages.table1 import Row
 from postprocess.runs.folders import prepared_folder
+from postprocess.studies.table1 import UNIFORM_TOLERANCE, Row, table1
+from postprocess.studies.table1_page import ON_MEASURES, PAGE, save, table1_section
 
-PAGE = "README.md"
 COARSE_CELLS = 2562
 NESTED_CELLS = 5781
 PUBLISHED_NESTED = (5.7079, 0.9006, 0.4012, 0.9904, 0.7114)
@@ -37,7 +36,6 @@ PUBLISHED_NESTED = (5.7079, 0.9006, 0.4012, 0.9904, 0.7114)
 
 NESTED_STARTS = (("icosahedral", 0), ("fibonacci", 0), ("random", 0), ("random", 1))
 
-UNIFORM_TOLERANCE = 1e-6
 VARIABLE_TOLERANCE = 1e-6
 
 
@@ -69,19 +67,9 @@ def write_page(folder: Path, rows: list[Row], tell: Tell) -> Path:
     published = ", ".join(f"{value:.4f}" for value in PUBLISHED_NESTED)
     text = f"""# Mesh generation: quality and convergence
 
-Made by `trisk quality --table1 --max-level {rows[-1].level} -o FOLDER`. Measures as in Ju, Ringler and Gunzburger
-(2011), section 4: μ is the largest over the smallest distance between neighbours, σ the shortest over the longest
-distance of a cell to its neighbours, q the quality of Delaunay triangles. The residual is the largest distance between
-a generator and the constrained centroid of its cell, in mean spacings.
+Made by `python docs/tools/mesh_page.py FOLDER --max-level {rows[-1].level}`. {ON_MEASURES}
 
-## Table 1, ours and published
-
-{chr(10).join(table1_lines(rows))}
-
-The published table has slips: row 3 is shifted (its bisection σ and q are those of the SCVT, and its SCVT ones repeat
-row 2), the SCVT's μ of row 4 breaks the sequence, and q avg of rows 8 and 9 cannot be. From row 7 on the published
-SCVTs are not converged: μ drifts with the residual that is left. On the way to convergence μ, σ avg and q avg
-overshoot, so look at the residual before comparing digits.
+{(2 * chr(10)).join(table1_section(rows))}
 
 ## Variable resolution
 
@@ -127,3 +115,17 @@ iteration here is as many samples as there are cells or more, stop at the noise 
 """
     (folder / PAGE).write_text(text)
     return folder / PAGE
+
+
+def main() -> None:
+    """Make Table 1 and the page."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--max-level", type=int, default=6)
+    arguments = parser.parse_args()
+    rows = table1(arguments.max_level, UNIFORM_TOLERANCE, lambda row: print(f"level {row.level}", flush=True))
+    print(write_page(arguments.folder, rows, lambda line: print(line, flush=True)))
+
+
+if __name__ == "__main__":
+    main()
