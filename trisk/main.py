@@ -6,6 +6,7 @@ import os
 import signal
 import sys
 import warnings
+from collections.abc import Callable, Iterable
 from contextlib import suppress
 from typing import TextIO, cast
 
@@ -14,23 +15,29 @@ import typer
 from trisk.cli import bench, cases, compare, mesh, plot, quality, reference, run, spectra, study
 from trisk.report.streams import ErrorOutput
 
-app = typer.Typer(
-    help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
-)
-
 COMMANDS = (
     *(mesh.mesh, quality.quality, run.run, cases.cases, plot.plot, spectra.spectra, reference.reference),
     *(compare.compare, bench.bench),
 )
 """In the order of the help."""
 
-for command in COMMANDS:
-    app.command()(command)
-app.add_typer(study.app, name="study")
+
+def app_of(commands: Iterable[Callable[..., None]]) -> typer.Typer:
+    """The app of `commands`, each called as its function is, and of the studies."""
+    app = typer.Typer(
+        help="Spherical centroidal Voronoi meshes and an energy-conserving shallow-water model on them.",
+        no_args_is_help=True,
+        add_completion=False,
+        pretty_exceptions_enable=False,
+        rich_markup_mode=None,
+    )
+    for command in commands:
+        app.command()(command)
+    app.add_typer(study.app, name="study")
+    return app
+
+
+app = app_of(COMMANDS)
 
 ERRORS_OF_PATHS = (
     *(errno.ENOENT, errno.EACCES, errno.EPERM, errno.EEXIST, errno.ENOTDIR, errno.EISDIR),
