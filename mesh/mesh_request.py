@@ -1,6 +1,6 @@
-"""What a mesh that is to be generated is asked to be, with the defaults of all that may be left out.
+"""The description of a mesh to be generated, with the defaults of everything that may be left out.
 
-This module imports nothing when it runs, so that the command line can tell its defaults without loading the package.
+This module imports no package when it runs, so that the command line can read the defaults quickly.
 """
 
 from __future__ import annotations
@@ -18,16 +18,16 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class MeshRequest:
-    """A mesh to be generated: `scvt_mesh` and `trisk mesh` take these by the same names.
+    """A mesh to be generated; `scvt_mesh` and `trisk mesh` take its fields by the same names.
 
     Attributes
     ----------
     cells
-        Number of cells. A `nested` mesh may leave it to the density.
+        Number of cells; a `nested` mesh may leave it to the density.
     density
         A name, the name of a NetCDF file, or any callable (see `mesh.density.named`).
     start
-        Where generators start (see `mesh.generation.generators.starting_points`); by default from the bisected
+        Starting points (see `mesh.generation.generators.starting_points`); by default from the bisected
         icosahedron where that has this number of cells, else from the Fibonacci spiral.
     method
         `lbfgs`, `lloyd`, `multilevel` (L-BFGS on icosahedral meshes from coarse to fine), `probabilistic` or
@@ -36,15 +36,15 @@ class MeshRequest:
         Largest distance of a generator from the centroid of its cell, in mean spacings; by default as small as the
         density and the method allow.
     max_iterations
-        Iterations after which an optimisation gives up.
+        Iterations after which each optimisation gives up.
     seed
-        Of all that is random.
+        Seed of all random choices.
     nested
-        A mesh to refine where the density asks for it, instead of a start; all other generators stay.
+        A mesh to refine where the density asks for it, in place of a start; all other generators stay.
     well_centered
         Whether to trade a little centroidality for a mesh without obtuse triangles.
     max_seconds
-        Time after which the generation gives up, all in all.
+        Seconds after which the generation gives up.
     density_variable
         Variable of a density file.
     density_floor, density_power, density_smoothing

@@ -1,4 +1,4 @@
-"""The public names of all packages, brought when they are asked for, so that `import trisk` is quick."""
+"""The public names of all packages, loaded when first used, so that `import trisk` is quick."""
 
 import importlib
 from typing import Any

@@ -43,16 +43,16 @@ ERRORS_OF_PATHS = (
     *(errno.ENOENT, errno.EACCES, errno.EPERM, errno.EEXIST, errno.ENOTDIR, errno.EISDIR),
     *(errno.EINVAL, errno.ENAMETOOLONG, errno.ELOOP, errno.EROFS),
 )
-"""What the system says of paths that are no use."""
+"""System errors that mean an unusable path."""
 
 ERRORS_OF_OUTPUT = (errno.ENOSPC, errno.EPIPE, errno.EIO, errno.EFBIG, errno.EDQUOT, errno.EBADF)
-"""What the system says, without the name of a file, where the output takes no more."""
+"""System errors that, without a file name, mean that the output cannot be written."""
 
 NO_THREADING_LAYER = "threading layer could be loaded"
-"""What numba says where NUMBA_THREADING_LAYER names one that is not installed."""
+"""Part of numba's message when NUMBA_THREADING_LAYER names a layer that is not installed."""
 
 RUN_FAILED, BAD_INPUT, STOPPED = 1, 2, 128
-"""Exit codes; the last is that of shells, to which the number of the signal is added."""
+"""Exit codes; as shells do, the number of the signal is added to the last."""
 
 
 def _warning_line(message: Warning | str, *_: object) -> str:
@@ -60,12 +60,12 @@ def _warning_line(message: Warning | str, *_: object) -> str:
 
 
 def main() -> None:
-    """Run the command line; exit with 0 when done, 1 where a run failed, 2 on bad input."""
+    """Run the command line; exit with 0 when done, 1 if a run failed, 2 on bad input."""
     warnings.formatwarning = _warning_line  # type: ignore[assignment]
-    # Overflows and the like come of wrong input, which is told of by an error.
+    # Overflows and the like come from bad input, which an error reports.
     warnings.filterwarnings("ignore", category=RuntimeWarning)
     if isinstance(sys.stdout, io.TextIOWrapper):
-        sys.stdout.reconfigure(errors="backslashreplace")  # names of files may hold any bytes
+        sys.stdout.reconfigure(errors="backslashreplace")  # file names may hold any bytes
     if sys.stderr is not None:
         sys.stderr = cast(TextIO, ErrorOutput(sys.stderr))
     try:
@@ -81,7 +81,7 @@ def main() -> None:
 
 
 def _call_app() -> None:
-    """Run the command and write out what it printed; raise `OSError` where the output takes no more."""
+    """Run the command and flush its output; raise `OSError` if that cannot be written."""
     try:
         try:
             app()
@@ -89,7 +89,7 @@ def _call_app() -> None:
             if sys.stdout is not None:
                 sys.stdout.flush()
     except SystemExit as stop:
-        # Typer ends with a code of its own where the reader of a pipe has gone.
+        # Typer exits with its own code when the reader of a pipe has gone.
         if isinstance(stop.__context__, BrokenPipeError):
             _drop_output()
             raise stop.__context__ from None
@@ -101,13 +101,13 @@ def _call_app() -> None:
 
 
 def _drop_output() -> None:
-    """Let the interpreter not try once more, at its end, to write what cannot be written."""
+    """Keep the interpreter from trying again, at exit, to write what cannot be written."""
     with suppress(OSError, ValueError, AttributeError), open(os.devnull, "wb") as nothing:
         os.dup2(nothing.fileno(), sys.stdout.fileno())
 
 
 def _exit_code(error: Exception) -> int | None:
-    """Exit code for a foreseen error; None for a fault of this program."""
+    """Exit code for a foreseen error; None for a bug."""
     if isinstance(error, OSError):
         return BAD_INPUT if error.errno in ERRORS_OF_PATHS else RUN_FAILED
     from mesh import MeshError

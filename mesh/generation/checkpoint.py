@@ -1,4 +1,4 @@
-"""Checkpoints of a mesh generation: the best points so far, to go on from after an interruption."""
+"""Checkpoints of a mesh generation: the best points so far, to continue from after an interruption."""
 
 import json
 import os
@@ -19,7 +19,7 @@ from mesh.mesh_request import MeshRequest
 from mesh.safe_files import written_aside
 
 SECONDS_BETWEEN = 30.0
-"""How much work a sudden end may lose."""
+"""Most work that a crash can lose."""
 
 
 def checkpoint_path(output: Path) -> Path:
@@ -30,8 +30,8 @@ def checkpoint_path(output: Path) -> Path:
 class CheckpointKeeper:
     """A callback that keeps the iterate of the smallest residual, and writes it to `path` every half minute.
 
-    Only the same `request` may go on from the file. As a context, it saves the points when the work in it fails, and
-    removes the file when all went well.
+    Only the same `request` may continue from the file. As a context manager, it saves the points if its block fails
+    and removes the file if all goes well.
     """
 
     def __init__(self, path: Path, request: MeshRequest) -> None:
@@ -51,18 +51,18 @@ class CheckpointKeeper:
 
     @property
     def has_points(self) -> bool:
-        """Whether there are points to go on from."""
+        """Whether there are points to continue from."""
         return self._best is not None
 
     def __call__(self, iterate: Iterate) -> None:
-        """Take note of an iterate."""
+        """Record an iterate."""
         if self._best is None or iterate.residual < self._best[0]:
             self._best = (iterate.residual, iterate.points.copy())
         if time.monotonic() - self._saved > SECONDS_BETWEEN:
             self.save()
 
     def save(self) -> bool:
-        """Write the best points now; False where there are none yet."""
+        """Write the best points now; False if there are none yet."""
         if self._best is None:
             return False
         residual, points = self._best
@@ -73,13 +73,13 @@ class CheckpointKeeper:
         return True
 
     def remove(self) -> None:
-        """Delete the file of a generation that is complete."""
+        """Delete the file."""
         self._path.unlink(missing_ok=True)
 
     def load(self) -> Array:
-        """Points (n, 3) to go on from.
+        """Points (n, 3) to continue from.
 
-        Raises `MeshError` where there are none, or they belong to another request.
+        Raises `MeshError` if there are none, or if they belong to another request.
         """
         path, points, stored = self._path, *_read(self._path)
         for name, value in self._description.items():
@@ -96,7 +96,7 @@ class CheckpointKeeper:
 
 
 def described(request: MeshRequest) -> dict[str, object]:
-    """What determines the generation of a mesh, as words and numbers; how it ends does not."""
+    """What determines the points of a generation, as words and numbers; its limits do not."""
     density = request.density
     if isinstance(density, FileDensity):
         variable, shaping = density.variable, density.shaping
@@ -115,12 +115,12 @@ def described(request: MeshRequest) -> dict[str, object]:
 
 
 def _read(path: Path) -> tuple[Array, dict[str, object]]:
-    """Points (n, 3) of a checkpoint and the description of their mesh; raise `MeshError` where it is none."""
+    """Points (n, 3) in a checkpoint and the description of their mesh; raise `MeshError` if it is unreadable."""
     try:
         with np.load(path) as file:
             points, stored = file["points"], dict(json.loads(str(file["description"])).items())
         if points.ndim != 2 or points.shape[1] != 3 or points.dtype != np.float64 or not np.isfinite(points).all():
-            raise ValueError("its points are none")
+            raise ValueError("it holds no valid points")
     except FileNotFoundError as error:
         raise MeshError(f"{path}: there is no checkpoint to resume from; start without --resume") from error
     except (OSError, EOFError, LookupError, ValueError, TypeError, AttributeError, zipfile.BadZipFile) as error:

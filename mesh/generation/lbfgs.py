@@ -162,7 +162,7 @@ class PairMemory:
         return next(slot for slot in range(self.capacity + 1) if slot not in self.slots)
 
     def update(self, slot: int, old_dots: Array, new_dots: Array, least_curvature: float) -> None:
-        """Take note of a new gradient, and keep the pair in `slot` if its curvature s.y is above the least.
+        """Record a new gradient, and keep the pair in `slot` if its curvature s.y is above the least.
 
         Both arrays hold the products of a gradient with all s, that of `slot` last, then with all z: `old_dots` of
         the gradient before the step, `new_dots` of the one after it.
@@ -177,7 +177,7 @@ class PairMemory:
         self.step_dots, self.change_dots = steps[kept], changes[kept]
 
     def _append(self, slot: int, step_column: Array, change_column: Array) -> None:
-        """Add the newest pair; columns hold all s_i.y and z_i.y, its own last. Drop the oldest where there are many."""
+        """Add the newest pair; columns hold all s_i.y and z_i.y, its own last. Drops the oldest if there is no room."""
         first = max(0, len(self.slots) + 1 - self.capacity)
         self.slots = np.append(self.slots, slot)[first:]
         self._step_change = _bordered(self._step_change, step_column)[first:, first:]

@@ -22,16 +22,16 @@ from mesh.triangulation.ordering import hilbert_order, inverse_order
 Single = NDArray[np.float32]
 
 ROW_BLOCK = 1024
-"""Rows that one thread takes in one go."""
+"""Rows that one thread handles at a time."""
 
 SERIAL_LIMIT = 4096
-"""Fewer rows than this are not worth waking the threads for."""
+"""With fewer rows than this, one thread is faster."""
 
 SMALLEST_WEIGHT = 1.0e-6
 """Weights below this are left out of an interpolation."""
 
 CELLS_PER_GRID_POINT = 4.0
-"""The finest grid has about this many times fewer points than the mesh."""
+"""Mesh points per point of the finest grid, about."""
 
 
 @numba.njit(cache=True)

@@ -24,10 +24,10 @@ from mesh.geometry.sphere import fibonacci_points, normalize
 from mesh.triangulation.ordering import hilbert_order
 
 PROBES = 20_000
-"""Points at which the mean of the density's root is taken."""
+"""Number of points over which the root of the density is averaged."""
 
 BISECTED_ABOVE, TRISECTED_ABOVE = 1.3, 2.2
-"""Edges are divided in two or three where cells are to be narrower by at least this ratio."""
+"""Edges are divided in two or three where cells should be narrower by at least this ratio."""
 
 OUTSIDE = 1.0 + 1e-9
 """Where the ratio of widths is below this, nothing is refined and generators are fixed."""
@@ -36,7 +36,7 @@ SEARCH_STEPS = 60
 
 WANTED_QUALITY = 0.72
 RESEEDINGS = 8
-"""Surroundings of triangles below the wanted quality are shaken and converged again, so often at most."""
+"""How often, at most, the surroundings of triangles below the wanted quality are shaken and converged again."""
 
 
 def nested_scvt(
@@ -50,9 +50,9 @@ def nested_scvt(
 ) -> ScvtResult:
     """Refine the tessellation of unit vectors `points` (n, 3) with `triangles` where `density` is above its lowest.
 
-    `cells` is the number of generators in the end; by default that which keeps the widths of the fixed cells in
-    proportion. `seed` steers how bad triangles are shaken away. Raises `MeshError` for a number that the region cannot
-    take, or where the tolerance is not reached; the seconds of the `limits` are for all together.
+    `cells` is the final number of generators; by default the one that keeps cell widths in proportion to those of the
+    fixed cells. `seed` is for the shaking that removes bad triangles. The seconds of the `limits` are for the whole
+    call. Raises `MeshError` for a number of cells that the region cannot take, or if the tolerance is not reached.
     """
     begin = time.perf_counter()
     limits = Limits() if limits is None else limits
@@ -92,9 +92,9 @@ class _Refinement:
         return (density_at(self.density, points) / self.lowest) ** 0.25
 
     def natural_number(self, n_coarse: int) -> int:
-        """Number of points that gives the wanted widths: the coarse number times the mean of the squared ratio.
+        """Number of points that gives the wanted widths: the coarse number times the mean squared ratio.
 
-        Raises `MeshError` where that is more than a mesh can have.
+        Raises `MeshError` if that is more than a mesh can have.
         """
         number = n_coarse * float(np.mean(self(fibonacci_points(PROBES)) ** 2))
         if not number <= MAXIMUM_CELLS:
@@ -142,7 +142,7 @@ def _candidates(points: Array, triangles: Index, ratio: _Refinement) -> _Candida
 
 
 def _subdivided_points(points: Array, triangles: Index, ratio: _Refinement, count: int) -> Array:
-    """Points (count, 3) to add: the scale is sought that gives just enough, and those of least ratio are dropped."""
+    """Points (count, 3) to add: bisects for the scale that gives just enough, and drops those of least ratio."""
     candidates = _candidates(points, triangles, ratio)
     low, high = 1.0 / BISECTED_ABOVE + OUTSIDE - 1.0, 2.0 * float(candidates.ratio.max())
     if np.count_nonzero(candidates.chosen(low)) < count:

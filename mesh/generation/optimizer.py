@@ -40,7 +40,7 @@ RELATIVE_ROUND_OFF = 1e-13
 """Changes of energy smaller than this part of it are lost in round-off; then slopes decide on a step."""
 
 RELATIVE_QUADRATURE_ERROR = 1e-4
-"""The same under a density: kinks leave errors of this size in the energy, of which the gradient knows nothing."""
+"""The same under a density: kinks leave errors of this size in the energy that the gradient does not see."""
 
 LEAST_CURVATURE = 0.25
 """Under a density, pairs with s.y below this part of s.s, over the number of cells, are not kept: quadrature gives
@@ -49,7 +49,7 @@ neutral motions, such as rotations of a symmetric density, a curvature of this s
 WOLFE_FRACTION = 0.8
 
 PATIENCE = 100
-"""Iterations in which neither energy nor residual fall any more before the descent counts as ended by round-off."""
+"""Iterations without a fall of energy or residual after which the descent counts as ended by round-off."""
 
 PATIENCE_UNDER_DENSITY = 1000
 """The same under a density, where the energy may rise by its error for a while."""
@@ -165,7 +165,7 @@ class Optimizer:
         self,
         points: Array,
         triangles: Index | None = None,
-        method: str = "lbfgs",
+        method: str = MeshRequest.method,
         density: Density | None = None,
         fixed: NDArray[np.bool_] | None = None,
     ) -> None:
@@ -193,7 +193,7 @@ class Optimizer:
             self._patience = PATIENCE_UNDER_DENSITY
 
     def run(self, limits: Limits, callback: Callback | None = None) -> ScvtResult:
-        """Iterate until one of the `limits` is reached or round-off or quadrature allow no further step."""
+        """Iterate until a limit is reached, or until round-off or quadrature allow no further step."""
         history, begin = History(), time.perf_counter()
         self._evaluate_trial(self._memory.steps[0])
         self._accept_start()
@@ -212,7 +212,7 @@ class Optimizer:
                 return ScvtResult(state.points, self._triangulation.triangles, history, reason, self._fixed)
 
     def _step(self) -> bool:
-        """One iteration; False where no step is left, not even down the gradient.
+        """One iteration; False if no step is left, not even down the gradient.
 
         Under a density, whose energy is known to the error of its quadrature only, a step of Lloyd's method is left.
         """
@@ -231,7 +231,7 @@ class Optimizer:
         return True
 
     def _search_along_new_direction(self) -> bool:
-        """Halve the step until it is acceptable, and take it; False where none is."""
+        """Halve the step until it is acceptable, and take it; False if none is."""
         slot, slope, length = self._direction()
         for _ in range(MAXIMUM_HALVINGS):
             self._evaluate_trial(self._memory.steps[slot])

@@ -1,4 +1,4 @@
-"""From the description of a mesh to the mesh: the one way, of `scvt_mesh` and of the command line."""
+"""From the description of a mesh to the mesh, for `scvt_mesh` and the command line alike."""
 
 import os
 import time
@@ -24,7 +24,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 
 @dataclass(frozen=True)
 class GeneratedMesh:
-    """A validated mesh on the unit sphere, and what its angles cost where it was to be well-centred."""
+    """A validated mesh on the unit sphere and, if it was made well-centred, what that cost."""
 
     mesh: VoronoiMesh
     centring: WellCentered | None = None
@@ -50,10 +50,10 @@ def scvt_mesh(
     checkpoint: str | os.PathLike[str] | None = None,
     resume: bool = False,
 ) -> VoronoiMesh:
-    """A validated SCVT on the unit sphere; see `mesh.mesh_request.MeshRequest` for what it may be asked to be.
+    """A validated SCVT on the unit sphere; `mesh.mesh_request.MeshRequest` explains the arguments.
 
-    `callback` is called with each iterate. `checkpoint` names a file that keeps the best points of a generation that
-    fails or is interrupted; with `resume`, the same call goes on from there. Raises `MeshError` where no such mesh can
+    `callback` is called with each iterate. `checkpoint` names a file that keeps the best points if the generation
+    fails or is interrupted; with `resume`, the same call continues from there. Raises `MeshError` if no such mesh can
     be made.
     """
     if not isinstance(nested, VoronoiMesh | None):
@@ -88,9 +88,9 @@ def generate_mesh(
     keeper: CheckpointKeeper | None = None,
     resume: bool = False,
 ) -> GeneratedMesh:
-    """Make the mesh of the `request`; with `resume`, from the points of the `keeper`, which sees each iterate.
+    """Make the requested mesh; the `keeper` sees each iterate, and with `resume` its points are the start.
 
-    A nested mesh keeps no checkpoint. Raises `MeshError` where the request cannot be met.
+    A nested mesh keeps no checkpoint. Raises `MeshError` if the request cannot be met.
     """
     begin = time.perf_counter()
     if request.nested is None:
@@ -113,7 +113,7 @@ def generate_mesh(
 
 
 def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:
-    """The validated mesh, on the unit sphere, of generators that were optimised for a `density`, and tells of that."""
+    """The validated mesh, on the unit sphere, of generators optimised for `density`, which it records."""
     mesh = mesh_from_points(result.points, result.triangles, density, name_of(density))
     return replace(mesh, density_source=source_of(density), fixed_cells=result.fixed)
 
@@ -126,7 +126,7 @@ def _require_one_start(request: MeshRequest, resume: bool) -> None:
 def _from_start(
     points: Array | None, request: MeshRequest, density: Density, limits: Limits, callback: Callback
 ) -> ScvtResult:
-    """Converged generators, from `points` (n, 3) that were kept if there are any."""
+    """Converged generators, starting from `points` (n, 3) of a checkpoint if given."""
     if points is None:
         return converge(request, density, limits, callback)
     result = optimize(points, None, request.method, density, limits, callback, request.seed)
@@ -142,7 +142,7 @@ def _refined(
 
 
 def _well_centered(result: ScvtResult, density: Density, seconds: float) -> WellCentered:
-    """The result without obtuse triangles; raise `MeshError` where some are left after so many `seconds`."""
+    """The result without obtuse triangles; raise `MeshError` if the goal is missed, as it may be within `seconds`."""
     begin = time.perf_counter()
     better = well_center(result.points, result.triangles, density, result.fixed, seconds=seconds)
     if better.least_quality < GOAL:
@@ -156,7 +156,7 @@ def _well_centered(result: ScvtResult, density: Density, seconds: float) -> Well
 
 
 def _all_of(callbacks: Sequence[Callback]) -> Callback:
-    """A callback that calls all `callbacks` in turn."""
+    """A callback that calls `callbacks` in turn."""
 
     def call(iterate: Iterate) -> None:
         for each in callbacks:

@@ -1,15 +1,15 @@
 """The probabilistic generalized Lloyd method of Ju, Du and Gunzburger (2002), with MacQueen's method as a special case.
 
-Each iteration draws samples from the density, gives each to its nearest generator, and moves a generator x_i that got
-some, with mean u_i, to
+Each iteration draws samples from the density, assigns each to its nearest generator, and moves every generator x_i that
+got any, with mean u_i, to
 
     ((alpha_1 j_i + beta_1) x_i + (alpha_2 j_i + beta_2) u_i) / (j_i + 1),
 
 back on the sphere, where j_i = 1, 2, ... counts its updates, alpha_1 + alpha_2 = 1 and beta_1 + beta_2 = 1. One sample
 an iteration with alpha_1 = beta_2 = 1 is MacQueen's method; many samples with alpha_2 = beta_2 = 1 are Lloyd's method
-by chance. Steps are random: the residual falls like the root of the number of samples at best. Where it
-falls no more, the error of the samples is reached; then steps are halved, which averages over twice as many samples, so
-that any residual is reached in time. Without alpha_2, as in MacQueen's method, means are over all samples anyway.
+by sampling. Steps are random: the residual falls like the root of the number of samples at best. Once it
+stops falling, the sampling error is reached; then steps are halved, which averages over twice as many samples, so
+that any residual is reached in the end. Without alpha_2, as in MacQueen's method, means are over all samples anyway.
 """
 
 import time
@@ -46,10 +46,10 @@ class Blend:
 
 
 MACQUEEN = Blend(samples=1, alpha=0.0, beta=1.0)
-"""MacQueen's method: each generator is the mean of all samples that it ever got."""
+"""MacQueen's method: each generator is the mean of all its samples so far."""
 
 PATIENCE = 10
-"""Iterations of the history without a new smallest residual after which steps are halved."""
+"""Entries of the history without a new smallest residual after which steps are halved."""
 
 
 def probabilistic_lloyd(
@@ -90,7 +90,7 @@ def probabilistic_lloyd(
 
 
 def _stands_still(residuals: list[float]) -> bool:
-    """Whether the last residuals brought no new smallest one."""
+    """Whether none of the last residuals was a new smallest one."""
     return len(residuals) > PATIENCE and min(residuals[-PATIENCE:]) >= min(residuals[:-PATIENCE])
 
 
@@ -104,11 +104,11 @@ class _Mover:
         self._damping = 1.0
 
     def halve_steps(self) -> None:
-        """From now on, go half the way to the mean of the samples that was gone before."""
+        """From now on, go half as far towards the mean of the samples."""
         self._damping *= 0.5
 
     def sweep(self) -> None:
-        """As many iterations as take at least as many samples as there are generators."""
+        """Enough iterations to draw at least as many samples as there are generators."""
         iterations = -(-len(self.points) // self._blend.samples)
         drawn = random_points(iterations * self._blend.samples, self._density, self._generator)
         if self._blend.samples == 1:

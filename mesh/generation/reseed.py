@@ -2,7 +2,7 @@
 
 A variable-resolution SCVT is one of very many local minima, and its least quality is a matter of luck. The cells near
 triangles below a wanted quality are displaced at random and the mesh is converged again, until no such triangle is
-left; a mesh that lacks more than the one before is thrown away. The result is as centroidal as any other.
+left; a mesh further from the wanted quality than the one before is discarded. The result is as centroidal as any other.
 """
 
 from collections.abc import Callable
@@ -17,7 +17,7 @@ from mesh.triangulation.triangle_quality import near_bad_triangles, qualities
 
 SHAKEN_RINGS = 2
 AMPLITUDE = 0.35
-"""Size of a random displacement, in lengths of the sides near by."""
+"""Size of a random displacement, in lengths of the neighbouring sides."""
 
 
 def reseed(
@@ -28,9 +28,9 @@ def reseed(
     seed: int,
     fixed: NDArray[np.bool_],
 ) -> ScvtResult:
-    """Return the best mesh in so many tries, starting from a converged one; `fixed` generators are not displaced.
+    """Return the best mesh in at most `tries` tries, starting from a converged one; `fixed` generators stay.
 
-    The tries end where `converge` has no time left.
+    No try follows one for which `converge` had too little time.
     """
     generator = np.random.default_rng(seed)
     lacking = _shortfall(result, wanted)
@@ -47,12 +47,12 @@ def reseed(
 
 
 def _shortfall(result: ScvtResult, wanted: float) -> float:
-    """Sum of what the qualities of the triangles lack."""
+    """Sum over triangles of how far their quality falls short."""
     return float(np.maximum(0.0, wanted - qualities(result.points, result.triangles)).sum())
 
 
 def _shaken(points: Array, triangles: Index, near: NDArray[np.bool_], generator: np.random.Generator) -> Array:
-    """Points (n, 3) with those in the mask `near` displaced at random."""
+    """Points (n, 3), with those in the mask `near` displaced at random."""
     moved = points.copy()
     amplitude = AMPLITUDE * _side_lengths(points, triangles)[near, None]
     moved[near] = normalize(points[near] + amplitude * generator.normal(size=(np.count_nonzero(near), 3)))

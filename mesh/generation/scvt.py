@@ -31,16 +31,16 @@ UNIFORM_TOLERANCE, VARIABLE_TOLERANCE = Limits.tolerance, 1e-6
 """Centroid residuals, in mean spacings, at which an SCVT counts as converged."""
 
 ACCEPTABLE = 1e-4
-"""The same where quadrature of the density ends the descent: kinks between values of a coarse field leave less."""
+"""Residual that will do where quadrature of the density ends the descent: kinks of a coarse field allow no better."""
 
 SAMPLING_TOLERANCES = {"probabilistic": (0.02, 0.2), "macqueen": (0.1, 0.5)}
-"""The same, under uniform and any other density, for the methods whose residual falls like the root of the samples."""
+"""Tolerances, under uniform and any other density, of the methods whose residual falls like the root of the samples."""
 
 COARSEST_LEVEL = 3
 """Bisection level of the coarsest mesh that the multilevel method converges."""
 
 COARSE_TOLERANCE = 1e-3
-"""Residual at which the multilevel method goes on to the next finer mesh; tighter ones save no time."""
+"""Residual at which the multilevel method moves to the next finer mesh; a smaller one saves no time."""
 
 ADVICE = {
     "iterations": "allow more iterations",
@@ -52,9 +52,9 @@ ADVICE = {
 
 
 def density_of(request: MeshRequest) -> Density:
-    """The density that is asked for, as a function, read where it is the name of a file.
+    """The requested density as a function, read if it is the name of a file.
 
-    Raises `MeshError` where there is none of that name, or where one is to be shaped that is not from a file.
+    Raises `MeshError` if there is none of that name, or if one that is not from a file should be shaped.
     """
     shaping = Shaping(request.density_floor, request.density_power, request.density_smoothing)
     if isinstance(request.density, str | os.PathLike):
@@ -68,25 +68,25 @@ def density_of(request: MeshRequest) -> Density:
 
 
 def cells_of(request: MeshRequest) -> int:
-    """The number of cells that is asked for; raise `MeshError` where there is none."""
+    """The requested number of cells; raise `MeshError` if there is none."""
     if request.cells is None:
         raise MeshError("the number of cells is missing; give --cells N")
     return request.cells
 
 
 def default_tolerance(density: object, method: str = MeshRequest.method) -> float:
-    """The residual to ask for under a density: quadrature does not allow as small a one as uniform density does.
+    """The residual to ask for: quadrature of a density does not allow one as small as uniform density does.
 
-    Methods that sample the density have the error of their samples: what thousands of cells reach in a minute or so.
+    Methods that sample the density carry sampling errors; theirs is what thousands of cells reach in about a minute.
     """
     uniform_tolerance, other = SAMPLING_TOLERANCES.get(method, (UNIFORM_TOLERANCE, VARIABLE_TOLERANCE))
     return uniform_tolerance if density in ("uniform", uniform) else other
 
 
 def limits_of(request: MeshRequest) -> Limits:
-    """Limits of the optimisation that is asked for; without a tolerance, the default one.
+    """Limits of the requested optimisation, with the default tolerance if none is given.
 
-    Kinks of a density may not allow that, and then a residual of `ACCEPTABLE` will do.
+    Where kinks of the density do not allow that, a residual of `ACCEPTABLE` will do.
     """
     if request.tolerance is not None:
         return Limits(request.tolerance, request.max_iterations, request.max_seconds)
@@ -123,7 +123,7 @@ def optimize(
 
 
 def generate_scvt(request: MeshRequest, callback: Callback | None = None) -> ScvtResult:
-    """Converged generators of an SCVT as asked for, without regard to `nested` and `well_centered`.
+    """Converged generators of the requested SCVT; `nested` and `well_centered` are ignored.
 
     They are numbered along a space-filling curve. Raises `MeshError` as `converge` does.
     """
@@ -134,7 +134,7 @@ def converge(request: MeshRequest, density: Density, limits: Limits, callback: C
     """Converged generators by number, start, method and seed of the `request`, along a space-filling curve.
 
     The seconds of the `limits` are for the whole call, the iterations for each optimisation in it. Raises
-    `MeshError` for unknown names, fewer than 12 cells, or where the tolerance of the `limits` is not reached.
+    `MeshError` for unknown names, fewer than 12 cells, or if the tolerance of the `limits` is not reached.
     """
     begin = time.perf_counter()
     cells, method = cells_of(request), request.method
@@ -151,9 +151,9 @@ def converge(request: MeshRequest, density: Density, limits: Limits, callback: C
 
 
 def check_converged(result: ScvtResult, limits: Limits) -> None:
-    """Raise `MeshError`, with what would help, where the tolerance is not reached.
+    """Raise `MeshError`, saying what would help, if the tolerance is not reached.
 
-    Warns with `MeshWarning` where the residual is acceptable only (see `Limits`).
+    Warns with `MeshWarning` if the residual is merely acceptable (see `Limits`).
     """
     residual = result.history.residual[-1]
     if result.reason == "quadrature" and residual <= limits.acceptable:

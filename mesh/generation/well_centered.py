@@ -6,8 +6,8 @@ triangulation, is
 
     sum over cells of weight_i |x_i - c_i|^2 + sum over triangles of max(0, goal - q)^2.
 
-Settling leaves the first sum out and moves the cells near triangles below the goal only; sides are turned in between
-where that makes the worse of their two triangles better. Relaxing is Lloyd's method under the penalty: the c_i are the
+Settling leaves the first sum out and moves only the cells near triangles below the goal; in between, sides are turned
+where that improves the worse of their two triangles. Relaxing is Lloyd's method under the penalty: the c_i are the
 centroids of the cells, and become those of the new cells after each round.
 """
 
@@ -30,10 +30,10 @@ from mesh.triangulation.repair import flip
 from mesh.triangulation.triangle_quality import near_bad_triangles, qualities, quality_of_triangle
 
 GOAL = 0.86
-"""Least quality that is asked for; from 0.8285 on no angle is right or obtuse."""
+"""Least quality asked for; above 0.8285 no angle is right or obtuse."""
 
 GOAL_MARGIN = 0.004
-"""The penalty begins so much above the goal when cells relax, for it is soft."""
+"""While cells relax, the penalty starts this far above the goal, because it is soft."""
 
 ANCHOR = 0.003
 """Weight of the clustering energy against the penalty."""
@@ -43,10 +43,10 @@ SETTLE_ROUNDS, RELAX_ROUNDS = 20, 20
 SETTLE_ITERATIONS, RELAX_ITERATIONS = 300, 20
 
 WORTHWHILE = 0.97
-"""A round of relaxing that leaves more than this part of the largest residual is the last."""
+"""Relaxing ends after a round that leaves more than this fraction of the largest residual."""
 
 SMALLEST_GAIN = 1e-9
-"""Sides are turned only for more quality than this."""
+"""Sides are turned only for a larger gain in quality than this."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +74,8 @@ def well_center(
 ) -> WellCentered:
     """Raise the least quality of a converged mesh of unit vectors `points` (n, 3) to the `goal`.
 
-    Generators that are `fixed` (n,) stay, and so do those far from triangles below the goal. No round begins after so
-    many `seconds`. Deterministic where that does not happen.
+    Generators that are `fixed` (n,) stay, and so do those far from triangles below the goal. No round begins after
+    `seconds`; unless they run out, the result is deterministic.
     """
     work = _Work(points, triangles, density, fixed, time.perf_counter() + seconds)
     before = residual = work.residual()
@@ -97,7 +97,7 @@ def well_center(
 
 
 class _Work:
-    """Points that move, and the triangles whose quality counts."""
+    """Moving points, and the triangles whose quality counts."""
 
     def __init__(
         self, points: Array, triangles: Index, density: Density, fixed: NDArray[np.bool_] | None, deadline: float
@@ -112,7 +112,7 @@ class _Work:
         self._deadline = deadline
 
     def is_late(self) -> bool:
-        """Whether no time is left."""
+        """Whether the time has run out."""
         return time.perf_counter() >= self._deadline
 
     def delaunay(self) -> Triangulation:
@@ -128,7 +128,7 @@ class _Work:
         return float(centroid_distances(self._integrals())[~self._fixed].max()) / mean_spacing(len(self.points))
 
     def settle(self, goal: float) -> None:
-        """Raise the qualities below the goal, whatever the centroids say."""
+        """Raise the qualities below the goal, regardless of centroids."""
         for _ in range(SETTLE_ROUNDS):
             free = self.near(goal, SETTLE_RINGS)
             if not free.any() or self.is_late():

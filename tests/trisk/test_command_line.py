@@ -24,7 +24,7 @@ def test_from_mesh_to_figures(trisk, mesh_file: Path, tmp_path: Path) -> None:
     code, out, _ = trisk("run", "williamson5", "--mesh", mesh_file, "--days", 1, "-o", tmp_path / "run")
     assert code == 0
     assert "completed" in out
-    assert "change of mass" in out
+    assert "mass change" in out
     code, out, _ = trisk("plot", tmp_path / "run")
     assert code == 0
     assert len(list((tmp_path / "run" / "figures").glob("*.png"))) == len(out.split()) == 5

@@ -1,1 +1,1 @@
-"""What the commands are given: the mesh they run on and the files they are to write."""
+"""What commands are given: the mesh they run on and the files they write."""

@@ -1,4 +1,4 @@
-"""The mesh that a command runs on: one that is read, or one that is generated for it."""
+"""The mesh that a command runs on, read or generated."""
 
 from pathlib import Path
 
@@ -13,9 +13,9 @@ from trisk.report.bars import convergence_bar
 
 
 def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bool, quiet: bool) -> VoronoiMesh:
-    """The mesh of `mesh_file`, or one of `cells` generated with a bar of progress unless `quiet`.
+    """The mesh of `mesh_file`, or a new one of `cells` cells, generated with a progress bar unless `quiet`.
 
-    Raises `typer.BadParameter` where neither is given, or both.
+    Raises `typer.BadParameter` if neither is given, or both.
     """
     if mesh_file is not None and cells is None:
         return read_mesh(mesh_file, recompute_metrics)
@@ -29,9 +29,9 @@ def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bo
 
 
 def mesh_of_run(directory: Path, cells: int | None) -> VoronoiMesh | None:
-    """The mesh of a run that the directory holds, None where there is none; so a run can go on without being told it.
+    """The mesh of the run in the directory, None if there is none; a run continues on it without being told.
 
-    Raises `MeshError` where it has another number of cells than `cells`, if that is given.
+    Raises `MeshError` if `cells` is given and the mesh has another number of cells.
     """
     path = directory / MESH_FILE
     if not path.is_file():

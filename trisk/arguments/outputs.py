@@ -1,4 +1,4 @@
-"""Files that commands write: tried before the work that fills them, and the command line that they keep."""
+"""Files that commands write: checked before the work starts, with the command line in their history."""
 
 import shlex
 import sys
@@ -10,9 +10,9 @@ from swe.errors import InputError
 
 
 def require_possible_file(path: Path) -> None:
-    """Raise `InputError` where no file can be written to `path`."""
+    """Raise `InputError` if no file can be written to `path`."""
     if path.exists() and not path.is_file():
-        raise InputError(f"{path} cannot be written, as it is there and no file; choose another place")
+        raise InputError(f"{path} cannot be written, as it exists and is not a file; choose another place")
     try:
         place = place_of(path)
         if not place.parent.is_dir():
@@ -24,5 +24,5 @@ def require_possible_file(path: Path) -> None:
 
 
 def command_line() -> str:
-    """The command as it was typed, for the history of files."""
+    """The command line as it was typed, for the history of files."""
     return name_in_text(shlex.join(["trisk", *sys.argv[1:]]))

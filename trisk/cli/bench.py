@@ -18,7 +18,7 @@ CASE = "williamson5"
 DEFAULT_CELLS = (10242, 40962)
 
 TOLERANCE = 1e-2
-"""Residual of the meshes made for timing: the cost of a step hardly depends on it, that of the mesh does."""
+"""Residual of the meshes made for timing: the cost of a step hardly depends on it, the cost of the mesh does."""
 
 
 def bench(
@@ -26,14 +26,14 @@ def bench(
         list[int] | None,
         typer.Option("--cells", metavar="N", help="Number of cells, repeatable; by default 10242 and 40962."),
     ] = None,
-    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time on this mesh instead.")] = None,
+    mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time the solver on this mesh instead.")] = None,
     recompute_metrics: Recompute = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
 ) -> None:
     """Time the solver.
 
-    Tells the cost of a step of test case 5, beside plain loops and beside what the memory could do.
+    Reports the cost of a step of test case 5, beside plain loops and the memory bandwidth.
     """
     results = _timings(mesh_file, cells or (), recompute_metrics, show=not quiet)
     if as_json:
@@ -45,7 +45,7 @@ def bench(
 
 
 def _timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool, show: bool) -> "list[Timing]":
-    """Timings of test case 5 on the mesh of a file or on meshes of so many cells, told one by one if `show`."""
+    """Timings of test case 5 on the mesh of a file or on meshes of these sizes, announced one by one if `show`."""
     from cases import find_case
     from mesh.generation.generators import MINIMUM_CELLS
     from swe import Simulation

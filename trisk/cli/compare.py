@@ -19,17 +19,19 @@ def compare(
     ] = "auto",
     days: Annotated[
         list[float] | None,
-        typer.Option("--day", help="Day to compare, repeatable; by default the last that all have."),
+        typer.Option("--day", help="Day to compare, repeatable; by default the last that all runs have."),
     ] = None,
     output: Annotated[
         Path | None,
-        typer.Option("--output", "-o", help="Folder for maps of the last day; by default figures of the first run."),
+        typer.Option(
+            "--output", "-o", help="Folder for maps of the last day; by default the figures folder of the first run."
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
 ) -> None:
     """Compare runs with a solution or with each other.
 
-    Prints error norms and what was conserved, and draws maps.
+    Prints error norms and conservation, and draws maps.
     """
     from postprocess.compare.comparison import compare_runs, comparison_record
     from postprocess.figures.compare_maps import write_maps

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 def _defaults() -> Any:
     """The class that describes a mesh, for the defaults of its fields.
 
-    Its module runs by itself, as no help would be quick that imports the package.
+    Its module runs on its own: importing it would import the whole package and make every help text slow.
     """
     package = find_spec("mesh")
     assert package is not None
@@ -46,25 +46,29 @@ def mesh(
     density_variable: Annotated[
         str, typer.Option("--density-variable", help="Variable of FILE.nc that holds the density.")
     ] = DEFAULTS.density_variable,
-    density_floor: Annotated[float, typer.Option("--density-floor", help="Raise smaller values of the field.")] = (
-        DEFAULTS.density_floor
-    ),
+    density_floor: Annotated[
+        float, typer.Option("--density-floor", help="Raise smaller values of the field to this.")
+    ] = (DEFAULTS.density_floor),
     density_power: Annotated[
-        float, typer.Option("--density-power", help="Power of the field that is the density; -4 for cell widths.")
+        float, typer.Option("--density-power", help="Power of the field that gives the density; -4 for cell widths.")
     ] = DEFAULTS.density_power,
     density_smoothing: Annotated[
-        int, typer.Option("--density-smoothing", help="Passes of smoothing of the field, before the power.")
+        int, typer.Option("--density-smoothing", help="Smoothing passes over the field, before the power.")
     ] = DEFAULTS.density_smoothing,
     start: Annotated[
         str | None,
-        typer.Option("--start", help="icosahedral, fibonacci, random or random-root; the first where it exists."),
+        typer.Option(
+            "--start",
+            help="icosahedral, fibonacci, random or random-root; by default the first, or the "
+            "second where the first has no such mesh.",
+        ),
     ] = DEFAULTS.start,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of all that is random.", min=0)] = DEFAULTS.seed,
+    seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,
     method: Annotated[
         str, typer.Option("--method", help="lbfgs, lloyd, multilevel, probabilistic or macqueen.")
     ] = DEFAULTS.method,
     nested: Annotated[
-        Path | None, typer.Option("--nested", help="Refine this mesh where the density asks for it, keep the rest.")
+        Path | None, typer.Option("--nested", help="Refine this mesh where the density asks for it and keep the rest.")
     ] = None,
     well_centered: Annotated[
         bool,
@@ -74,20 +78,22 @@ def mesh(
         float | None,
         typer.Option(
             "--tolerance",
-            help="Largest distance to centroids, in mean spacings; 1e-8, or 1e-6 under a density, and more for methods "
-            "that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
+            help="Largest distance from generator to centroid, in mean spacings; by default 1e-8, 1e-6 under a "
+            "density, and more for methods that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
         ),
     ] = DEFAULTS.tolerance,
-    max_iterations: Annotated[int, typer.Option("--max-iterations", help="Give up after so many.", min=1)] = (
-        DEFAULTS.max_iterations
-    ),
-    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after so long, all in all.")] = (
+    max_iterations: Annotated[
+        int, typer.Option("--max-iterations", help="Give up after this many iterations.", min=1)
+    ] = (DEFAULTS.max_iterations),
+    max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after this many seconds in total.")] = (
         DEFAULTS.max_seconds
     ),
-    resume: Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint of an interrupted call.")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue from the checkpoint of an interrupted call.")
+    ] = False,
     file_format: Annotated[
         str,
-        typer.Option("--format", help="netcdf4, or for programs without HDF5: cdf5, or classic, with 64-bit offsets."),
+        typer.Option("--format", help="netcdf4; for programs without HDF5, cdf5 or classic (with 64-bit offsets)."),
     ] = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
@@ -134,7 +140,7 @@ def mesh(
 def _progress(
     request: "MeshRequest", output: Path, tolerance: float, quiet: bool
 ) -> "Iterator[tuple[Callback, CheckpointKeeper]]":
-    """Give the bar and the keeper of the checkpoint, which outlasts only what fails or is interrupted."""
+    """Show a bar and keep a checkpoint, which stays only if the work fails or is interrupted."""
     from mesh.generation.checkpoint import CheckpointKeeper, checkpoint_path
     from trisk.report.bars import convergence_bar
 

@@ -12,10 +12,10 @@ CaseName = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case, as angle=pi/2; repeatable."),
+    typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case, such as angle=pi/2; repeatable."),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
 Recompute = Annotated[
     bool,
-    typer.Option("--recompute-metrics", help="Rebuild lengths, areas and weights of the file from its generators."),
+    typer.Option("--recompute-metrics", help="Rebuild the file's lengths, areas and weights from its generators."),
 ]

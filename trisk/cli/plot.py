@@ -12,9 +12,9 @@ def plot(
     run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
     quiet: Quiet = False,
 ) -> None:
-    """Draw maps, the mesh and conservation of a run.
+    """Draw maps, the mesh and the conservation of a run.
 
-    The figures go to the folder of figures of the run.
+    The figures go to the run's figures folder.
     """
     from postprocess.figures.plots import plot_run
     from postprocess.runs.reading import read_run

@@ -1,4 +1,4 @@
-"""`trisk quality`: validate a mesh and measure it, or make the published table of qualities anew."""
+"""`trisk quality`: validate a mesh and measure it, or reproduce the published table."""
 
 import json
 import math
@@ -16,7 +16,7 @@ def quality(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
     recompute_metrics: Recompute = False,
     table1: Annotated[
-        bool, typer.Option("--table1", help="Make Table 1 of Ju, Ringler and Gunzburger (2011) anew instead.")
+        bool, typer.Option("--table1", help="Reproduce Table 1 of Ju, Ringler and Gunzburger (2011) instead.")
     ] = False,
     max_level: Annotated[int, typer.Option("--max-level", help="Last level of the table, up to 9.")] = 6,
     output: Annotated[

@@ -15,7 +15,7 @@ def reference(
         list[float] | None, typer.Option("--day", help="Day to keep, repeatable; by default those of the case.")
     ] = None,
     truncation: Annotated[
-        int, typer.Option("--truncation", help="Highest total wavenumber; its half and quarter are run as well.")
+        int, typer.Option("--truncation", help="Highest total wavenumber; a half and a quarter of it are run as well.")
     ] = 341,
     damping_hours: Annotated[
         float, typer.Option("--damping-hours", help="Time in which del^8 damps that wavenumber to 1/e; inf for none.")

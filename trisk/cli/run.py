@@ -1,4 +1,4 @@
-"""`trisk run`: integrate a test case, or go on with a run."""
+"""`trisk run`: run a test case, or continue a run."""
 
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -12,15 +12,17 @@ def run(
     case: CaseName,
     output: Annotated[Path, typer.Option("--output", "-o", help="Run directory to create.")],
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
-    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
+    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of this many cells instead.")] = None,
     settings: Settings = None,
     means: Annotated[
-        bool, typer.Option("--cell-means", help="Start from means over the cells instead of values at their centres.")
+        bool, typer.Option("--cell-means", help="Start from cell means instead of values at cell centres.")
     ] = False,
     days: Annotated[
         float | None,
         typer.Option(
-            "--days", help="Simulated days since the start; by default those that the paper recommends, or of the run."
+            "--days",
+            help="Simulated days since the start; by default what the paper recommends or, with --resume, "
+            "what the run was given.",
         ),
     ] = None,
     time_step: Annotated[
@@ -33,22 +35,26 @@ def run(
     ] = 24.0,
     integrator: Annotated[
         Literal["rk4", "rrk4"],
-        typer.Option("--integrator", help="rk4, or rrk4, which scales its steps to keep total energy to round-off."),
+        typer.Option(
+            "--integrator", help="rk4, or rrk4, which scales its steps to conserve total energy to round-off."
+        ),
     ] = "rk4",
     anticipation: Annotated[
         float,
         typer.Option(
-            "--apvm", help="Part of a step by which potential vorticity is anticipated (APVM), 0.5 in the literature."
+            "--apvm",
+            help="Fraction of a time step by which potential vorticity is anticipated (APVM); 0.5 in the literature.",
         ),
     ] = 0.0,
     dissipation: Annotated[
         float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
     ] = 0.0,
-    force: Annotated[bool, typer.Option("--force", help="Replace a run that the directory holds.")] = False,
+    force: Annotated[bool, typer.Option("--force", help="Replace the run in the directory.")] = False,
     resume: Annotated[
         bool,
         typer.Option(
-            "--resume", help="Go on with the run in the directory, on its mesh; a finished one to a later --days."
+            "--resume",
+            help="Continue the run in the directory, on its mesh; a finished run continues to a later --days.",
         ),
     ] = False,
     recompute_metrics: Recompute = False,
@@ -56,7 +62,7 @@ def run(
 ) -> None:
     """Run a test case and write snapshots and diagnostics.
 
-    Ctrl-C and SIGTERM stop it with a checkpoint.
+    Ctrl-C and SIGTERM stop the run and leave a checkpoint.
     """
     from cases import find_case
     from cases.parameters import split_settings
@@ -78,7 +84,7 @@ def run(
         "anticipation": anticipation,
         "dissipation": dissipation,
     }
-    # What can be refused is so before a mesh is made for nothing.
+    # Refuse what can be refused before a mesh is made in vain.
     Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)
     before = run_to_go_on_with(output, force, resume)
     if days is None:

@@ -18,7 +18,7 @@ def spectra(
 ) -> None:
     """Write and draw spectra of energy and potential enstrophy.
 
-    Energy is that of the motion, and the wavenumber the total one.
+    The energy is kinetic energy; wavenumbers are total wavenumbers.
     """
     from postprocess.figures.spectra_figure import write_spectra_of
     from postprocess.runs.reading import read_run

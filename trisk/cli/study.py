@@ -9,9 +9,11 @@ import typer
 
 from trisk.cli.options import CaseName, Quiet, Recompute, Settings
 
-app = typer.Typer(help="Study how meshes or time steps become errors. An interrupted study goes on.")
+app = typer.Typer(
+    help="Study how meshes or time steps turn into errors. An interrupted study continues where it stopped."
+)
 
-Output = Annotated[Path, typer.Option("--output", "-o", help="Folder of the study, new or begun before.")]
+Output = Annotated[Path, typer.Option("--output", "-o", help="Folder of the study; one begun before is continued.")]
 
 
 @app.command()
@@ -25,16 +27,18 @@ def mesh(
         list[int] | None,
         typer.Option("--cells", help="Number of cells, 10*4^k+2, repeatable; by default 642, 2562, 10242."),
     ] = None,
-    days: Annotated[float | None, typer.Option("--days", help="Simulated days; by default those of the paper.")] = None,
+    days: Annotated[
+        float | None, typer.Option("--days", help="Simulated days; by default what the paper recommends.")
+    ] = None,
     error_day: Annotated[
-        float | None, typer.Option("--error-day", help="Day on which errors are taken; by default the last.")
+        float | None, typer.Option("--error-day", help="Day at which errors are taken; by default the last.")
     ] = None,
     settings: Settings = None,
     quiet: Quiet = False,
 ) -> None:
     """Run a case over families and sizes of meshes.
 
-    Sets the quality of the meshes beside solution error and conservation.
+    Sets mesh quality beside solution error and conservation.
     """
     from cases import find_case
     from cases.parameters import split_settings
@@ -63,15 +67,17 @@ def time(
     output: Output,
     time_steps: Annotated[list[float], typer.Option("--dt", help="Time step in seconds; give several.")],
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="MPAS mesh file.")] = None,
-    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of so many cells instead.")] = None,
-    days: Annotated[float | None, typer.Option("--days", help="Simulated days; by default those of the paper.")] = None,
+    cells: Annotated[int | None, typer.Option("--cells", help="Generate a mesh of this many cells instead.")] = None,
+    days: Annotated[
+        float | None, typer.Option("--days", help="Simulated days; by default what the paper recommends.")
+    ] = None,
     settings: Settings = None,
     recompute_metrics: Recompute = False,
     quiet: Quiet = False,
 ) -> None:
     """Run a case with several time steps.
 
-    Tells the energy drift and the error of the time stepping.
+    Reports the energy drift and the time-stepping error.
     """
     from cases import find_case
     from cases.parameters import split_settings
@@ -88,7 +94,7 @@ def time(
 
 
 def _teller(quiet: bool) -> Callable[[str], None]:
-    """What prints a line, unless `quiet`."""
+    """A function that prints a line, unless `quiet`."""
 
     def tell(line: str) -> None:
         if not quiet:

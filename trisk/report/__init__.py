@@ -1,1 +1,1 @@
-"""What the commands show: bars of progress, tables, and the streams that they go to."""
+"""What commands show: progress bars, tables, and the streams these go to."""

@@ -1,4 +1,4 @@
-"""Bars that show how far long work has come."""
+"""Progress bars."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -12,7 +12,7 @@ from mesh.generation.optimizer import Callback, Iterate
 
 @contextmanager
 def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
-    """Give a callback that shows how far the residual has come down, on a logarithmic scale, to `tolerance`."""
+    """Give a callback that shows how close the residual has come to `tolerance`, on a logarithmic scale."""
     columns = (
         TextColumn("mesh: iteration {task.fields[iteration]}"),
         BarColumn(),
@@ -26,7 +26,7 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
 
         def show(iterate: Iterate) -> None:
             nonlocal first
-            progress.start()  # with the first iterate, so that what is refused shows no bar
+            progress.start()  # at the first iterate, so that a refused request shows no bar
             residual = iterate.residual
             first = max(residual, 2.0 * tolerance) if math.isnan(first) else first
             way = math.log(first / max(residual, 1e-300)) / math.log(first / tolerance)
@@ -39,7 +39,7 @@ def convergence_bar(tolerance: float, visible: bool) -> Iterator[Callback]:
 
 @contextmanager
 def bars_of_parts(visible: bool) -> Iterator[Callable[[str, float], None]]:
-    """Give a callback that shows which part, from 0 to 1, of each piece of work is done; a new name adds a bar."""
+    """Give a callback that takes the name of a task and the fraction done, 0 to 1; a new name adds a bar."""
     columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=Console(stderr=True), disable=not visible) as progress:
         tasks: dict[str, TaskID] = {}

@@ -23,7 +23,7 @@ def print_cases(cases: Iterable[Case]) -> None:
 
 
 def print_case(case: Case) -> None:
-    """Print what is known of `case`, and its parameters with their values, units and meanings."""
+    """Print a description of `case`, and its parameters with values, units and meanings."""
     exact, order = _accuracy(case)
     console = Console()
     console.print(escape(case.title), style="bold")
@@ -38,13 +38,13 @@ def print_case(case: Case) -> None:
 
 
 def _in_words(value: object) -> str:
-    """A value as one may type it; that of a case of a user may be anything."""
+    """A value as a user may type it; in a user's own case it may be anything."""
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:.10g}" if isinstance(value, float | int) else str(value)
 
 
 def _accuracy(case: Case) -> tuple[str, str]:
-    """Whether the solution is known, and the accepted order of convergence."""
+    """Whether there is an exact solution, and the accepted order of convergence."""
     order = case.convergence_order
     return "yes" if case.has_exact_solution else "no", "-" if order is None else f"{order:g}"

@@ -1,4 +1,4 @@
-"""What `trisk compare` prints: error norms, and what the runs had conserved."""
+"""What `trisk compare` prints: error norms and conservation."""
 
 from rich.console import Console
 from rich.table import Table
@@ -14,7 +14,7 @@ FIELD_LABELS = {
 
 
 def print_comparison(comparison: Comparison) -> None:
-    """Print the norms of all runs on all days, and the changes of conserved quantities until then."""
+    """Print the norms of all runs on all days, and how far conserved quantities have changed by then."""
     console = Console()
     console.print(_norms_table(comparison))
     console.print(_conservation_table(comparison))
@@ -52,7 +52,7 @@ def _conservation_table(comparison: Comparison) -> Table:
 
 
 def _table(title: str, *columns: str) -> Table:
-    """A table whose second column, of directories, gives way where the terminal is narrow."""
+    """A table whose second column, the directories, wraps on a narrow terminal."""
     table = Table(*columns, title=title)
     for column in table.columns:
         column.no_wrap = True

@@ -1,26 +1,26 @@
-"""The error output of the command, where progress is shown and errors are told."""
+"""The error stream of the command, for progress and errors."""
 
 from contextlib import suppress
 from typing import Any, TextIO
 
 
 class ErrorOutput:
-    """An error output whose loss (a full disk, a closed pipe or terminal) does not stop the work that it tells of."""
+    """An error stream whose loss (a full disk, a closed pipe or terminal) does not stop the work."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
 
     def write(self, text: str) -> int:
-        """Write `text` if that is possible."""
+        """Write `text` if possible."""
         with suppress(OSError):
             self._stream.write(text)
         return len(text)
 
     def flush(self) -> None:
-        """Write out what waits if that is possible."""
+        """Flush the stream if possible."""
         with suppress(OSError):
             self._stream.flush()
 
     def __getattr__(self, name: str) -> Any:
-        """Everything else is as the stream has it."""
+        """Everything else comes from the stream."""
         return getattr(self._stream, name)

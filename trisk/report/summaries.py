@@ -41,7 +41,7 @@ def tell_of_centring(centring: WellCentered) -> None:
 
 
 def print_run(directory: Path) -> None:
-    """Print the summary of a finished run as a table, and where its files are."""
+    """Print a summary of a finished run as a table, with the place of its files."""
     record = load_record(directory)
     series = read_series(directory / DIAGNOSTICS_FILE)
     last = {name: float(values[-1]) for name, values in series.items()}
@@ -53,11 +53,11 @@ def print_run(directory: Path) -> None:
         ("wall-clock time", f"{record['wall_seconds']:.1f} s"),
         ("Courant number", f"{last['courant_number']:.2f}"),
         ("largest speed", f"{last['max_speed']:.2f} m/s"),
-        ("change of mass", f"{last['mass_change']:+.2e}"),
-        ("change of total energy, of the available", f"{last['total_energy_change']:+.2e}"),
-        ("change of total energy, of the total", f"{last['total_energy_change_of_total']:+.2e}"),
-        ("change of potential enstrophy", f"{last['potential_enstrophy_change']:+.2e}"),
-        ("change of absolute vorticity, of |f|", f"{last['absolute_vorticity_change']:+.2e}"),
+        ("mass change", f"{last['mass_change']:+.2e}"),
+        ("total energy change / available energy", f"{last['total_energy_change']:+.2e}"),
+        ("total energy change / total energy", f"{last['total_energy_change_of_total']:+.2e}"),
+        ("potential enstrophy change", f"{last['potential_enstrophy_change']:+.2e}"),
+        ("absolute vorticity change / integral of |f|", f"{last['absolute_vorticity_change']:+.2e}"),
         ("files", str(directory)),
     ]
     _print_table(f"Run of {record['case']}", rows)

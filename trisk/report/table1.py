@@ -17,7 +17,7 @@ from postprocess.studies.table1_page import write_table1_page
 
 
 def print_table1(max_level: int, output: Path | None) -> None:
-    """Make Table 1 up to `max_level` and print it; with `output`, write the page with it there too."""
+    """Compute and print Table 1 up to `max_level`; with `output`, write a page to that folder as well."""
     console = Console(width=150)
     table = Table("level", "cells", "", "bisection", "SCVT", "residual", "seconds")
     for column in table.columns:
