@@ -48,7 +48,7 @@ def mesh(
     ] = DEFAULTS.density_variable,
     density_floor: Annotated[
         float, typer.Option("--density-floor", help="Raise smaller values of the field to this.")
-    ] = (DEFAULTS.density_floor),
+    ] = DEFAULTS.density_floor,
     density_power: Annotated[
         float, typer.Option("--density-power", help="Power of the field that gives the density; -4 for cell widths.")
     ] = DEFAULTS.density_power,
@@ -84,7 +84,7 @@ def mesh(
     ] = DEFAULTS.tolerance,
     max_iterations: Annotated[
         int, typer.Option("--max-iterations", help="Give up after this many iterations.", min=1)
-    ] = (DEFAULTS.max_iterations),
+    ] = DEFAULTS.max_iterations,
     max_seconds: Annotated[float, typer.Option("--max-seconds", help="Give up after this many seconds in total.")] = (
         DEFAULTS.max_seconds
     ),
