@@ -12,8 +12,8 @@ from mesh.triangulation.ordering import renumber
 from swe.errors import InputError
 
 Measures = tuple[float, float, float, float, float]
-MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
-LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
+QUALITY_MEASURES = ("mu", "sigma_avg", "sigma_min", "q_avg", "q_min")
+QUALITY_LABELS = ("μ", "σ avg", "σ min", "q avg", "q min")
 
 FIRST_LEVEL = 2
 
@@ -75,5 +75,5 @@ def table1(max_level: int, tolerance: float, tell: Callable[[Row], None] | None 
 
 
 def measures(quality: Quality) -> Measures:
-    """The five `MEASURES` of the table."""
+    """The five `QUALITY_MEASURES` of the table."""
     return quality.mu, quality.sigma_avg, quality.sigma_min, quality.q_avg, quality.q_min

@@ -7,7 +7,7 @@ from matplotlib.figure import Figure
 
 from mesh.discrete.quality import Quality
 from postprocess.runs.folders import prepared_folder
-from postprocess.studies.table1 import LABELS, PUBLISHED_BISECTION, PUBLISHED_SCVT, Measures, Row, measures
+from postprocess.studies.table1 import PUBLISHED_BISECTION, PUBLISHED_SCVT, QUALITY_LABELS, Measures, Row, measures
 
 PAGE = "README.md"
 PAGE_DOTS_PER_INCH = 80
@@ -49,9 +49,9 @@ def table1_lines(rows: list[Row]) -> list[str]:
     """Table 1 in Markdown: for each level ours above the published values."""
     lines = [
         "| level | cells | | bisection: "
-        + ", ".join(LABELS)
+        + ", ".join(QUALITY_LABELS)
         + " | SCVT: "
-        + ", ".join(LABELS)
+        + ", ".join(QUALITY_LABELS)
         + " | residual | iterations | s |",
         "|---|---|---|---|---|---|---|---|",
     ]
@@ -72,7 +72,7 @@ def table1_lines(rows: list[Row]) -> list[str]:
 def levels_figure(name: str, ours: dict[int, Measures], published: dict[int, Measures]) -> Figure:
     """Each measure of one kind of mesh against the level, ours beside the published values."""
     figure = Figure(figsize=(11.0, 3.0), layout="constrained")
-    for number, (axes, label) in enumerate(zip(figure.subplots(1, len(LABELS)), LABELS, strict=True)):
+    for number, (axes, label) in enumerate(zip(figure.subplots(1, len(QUALITY_LABELS)), QUALITY_LABELS, strict=True)):
         axes.plot(list(ours), [values[number] for values in ours.values()], "o-", label="ours")
         axes.plot(list(ours), [published[level][number] for level in ours], "x--", label="published")
         axes.set_title(label)
