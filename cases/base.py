@@ -16,6 +16,7 @@ from mesh.integrals.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.plain import plain, plain_number
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
+from swe.equations.terms import Forcing
 from swe.errors import InputError
 from swe.state import State
 
@@ -153,6 +154,10 @@ class Case(ABC):
     def coriolis(self, longitude: Array, latitude: Array) -> Array:
         """Coriolis parameter, 1/s, of rotation about the polar axis."""
         return 2.0 * self.rotation_rate * np.sin(latitude)
+
+    def terms(self) -> tuple[Forcing, ...]:
+        """What the case adds to the equations, such as wind or rain; nothing by default."""
+        return ()
 
     def state_on(self, mesh: VoronoiMesh, time: float = 0.0, sampling: Sampling = "point") -> State:
         """State at `time` seconds on `mesh`: thickness at the cells, normal velocity from the streamfunction.

@@ -109,8 +109,8 @@ def _made(kind: type, address: str, path: Path) -> object:
 
 
 def _require_members(case: object, address: str, path: Path) -> None:
-    """Raise `InputError` if a member that every case has, other than the name, is missing or has an invalid value."""
-    members = {*Case.__annotations__, *vars(Case)} - {"name"}
+    """Raise `InputError` if a member of every case (but name and terms) is missing or has an invalid value."""
+    members = {*Case.__annotations__, *vars(Case)} - {"name", "terms"}
     try:
         missing = sorted(name for name in members if not name.startswith("_") and not hasattr(case, name))
     except (Exception, SystemExit) as error:

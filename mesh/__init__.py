@@ -9,7 +9,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 import mesh.compiled_cache
 import mesh.forks  # noqa: F401
 from mesh.discrete.build import mesh_from_points
-from mesh.discrete.operators import Operators, build_operators
+from mesh.discrete.operators import Operators, build_operators, normal_component
 from mesh.discrete.quality import Quality, mesh_quality
 from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError, MeshWarning
@@ -26,6 +26,7 @@ __all__ = [
     "build_operators",
     "mesh_from_points",
     "mesh_quality",
+    "normal_component",
     "read_mesh",
     "scvt_mesh",
     "validate_mesh",

@@ -6,7 +6,7 @@ from typing import Any
 _PLACES = {
     "mesh": (
         *("MeshError", "MeshWarning", "Operators", "Quality", "VoronoiMesh", "build_operators", "mesh_from_points"),
-        *("mesh_quality", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *("mesh_quality", "normal_component", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
     ),
     "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
     "cases": (

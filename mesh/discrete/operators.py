@@ -4,7 +4,7 @@ Thickness-like fields live at cells, normal velocities at edges, vorticity-like 
 are the plain statement of the operators; the solver's kernels are tested against them.
 """
 
-from dataclasses import dataclass
+from functools import cached_property
 
 import numba
 import numpy as np
@@ -16,61 +16,89 @@ from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
 
-@dataclass(frozen=True, eq=False)
 class Operators:
-    """All operators of one mesh; apply them with `@`.
+    """All operators of one mesh, each made when it is first asked for; apply them with `@`.
 
-    `divergence` (cells x edges), `gradient` (edges x cells), `curl` (vertices x edges) and `perp` (edges x edges)
-    follow Ringler et al. (2010), equations (21), (22), (23) and (24). `kinetic_energy` (cells x edges) acts on
-    squared normal velocities (equation (63)). `cell_to_edge` and `vertex_to_edge` are means of two,
-    `cell_to_vertex` weights by kite areas (equation (25)).
+    They follow Ringler et al. (2010), by the numbers of their equations; across walls nothing flows and there is no
+    gradient (`mesh.discrete.walls`).
     """
 
-    divergence: csr_array
-    gradient: csr_array
-    curl: csr_array
-    perp: csr_array
-    kinetic_energy: csr_array
-    cell_to_edge: csr_array
-    cell_to_vertex: csr_array
-    vertex_to_edge: csr_array
+    def __init__(self, mesh: VoronoiMesh) -> None:
+        self._mesh = closed_mesh(mesh)
+
+    @cached_property
+    def divergence(self) -> csr_array:
+        """(cells x edges), equation (21)."""
+        mesh = self._mesh
+        first, second = mesh.cells_on_edge.T
+        return _scale_rows(
+            1.0 / mesh.area_cell, _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, mesh.n_cells)
+        )
+
+    @cached_property
+    def gradient(self) -> csr_array:
+        """(edges x cells), equation (22)."""
+        mesh = self._mesh
+        first, second = mesh.cells_on_edge.T
+        ones = np.ones(mesh.n_edges)
+        return _scale_rows(1.0 / mesh.dc_edge, _two_per_edge(second, first, ones, -ones, mesh.n_cells).T)
+
+    @cached_property
+    def curl(self) -> csr_array:
+        """(vertices x edges), equation (23)."""
+        mesh = self._mesh
+        tail, head = mesh.vertices_on_edge.T
+        return _scale_rows(
+            1.0 / mesh.area_triangle, _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, mesh.n_vertices)
+        )
+
+    @cached_property
+    def perp(self) -> csr_array:
+        """(edges x edges), from normal to tangential velocity, equation (24)."""
+        mesh = self._mesh
+        filled = np.arange(mesh.edges_on_edge.shape[1]) < mesh.n_edges_on_edge[:, None]
+        starts = np.concatenate([[0], np.cumsum(mesh.n_edges_on_edge)])
+        values, columns = mesh.weights_on_edge[filled], mesh.edges_on_edge[filled]
+        rows = csr_array((values, columns, starts), shape=(mesh.n_edges, mesh.n_edges))
+        rows.sum_duplicates()
+        return rows
+
+    @cached_property
+    def kinetic_energy(self) -> csr_array:
+        """(cells x edges), from squares of normal velocities, equation (63)."""
+        mesh = self._mesh
+        first, second = mesh.cells_on_edge.T
+        # A wall, whose cells are one, has the share of one cell.
+        quarter = np.where(first == second, 0.125, 0.25) * mesh.dv_edge * mesh.dc_edge
+        return _scale_rows(1.0 / mesh.area_cell, _two_per_edge(first, second, quarter, quarter, mesh.n_cells))
+
+    @cached_property
+    def cell_to_edge(self) -> csr_array:
+        """(edges x cells), the mean of two."""
+        first, second = self._mesh.cells_on_edge.T
+        halves = np.full(self._mesh.n_edges, 0.5)
+        return csr_array(_two_per_edge(first, second, halves, halves, self._mesh.n_cells).T)
+
+    @cached_property
+    def cell_to_vertex(self) -> csr_array:
+        """(vertices x cells), weighted by kite areas, equation (25)."""
+        mesh = self._mesh
+        vertex = np.repeat(np.arange(mesh.n_vertices), 3)
+        kites = (mesh.kite_areas_on_vertex.ravel(), (vertex, mesh.cells_on_vertex.ravel()))
+        return _scale_rows(1.0 / mesh.area_triangle, coo_array(kites, shape=(mesh.n_vertices, mesh.n_cells)))
+
+    @cached_property
+    def vertex_to_edge(self) -> csr_array:
+        """(edges x vertices), the mean of two."""
+        mesh = self._mesh
+        edge, (tail, head) = np.arange(mesh.n_edges), mesh.vertices_on_edge.T
+        places = np.concatenate([edge, edge]), np.concatenate([tail, head])
+        return csr_array(coo_array((np.full(2 * mesh.n_edges, 0.5), places), shape=(mesh.n_edges, mesh.n_vertices)))
 
 
 def build_operators(mesh: VoronoiMesh) -> Operators:
-    """The operators of `mesh`, in the units of its radius; across walls nothing flows and there is no gradient."""
-    mesh = closed_mesh(mesh)
-    n_cells, n_edges, n_vertices = mesh.n_cells, mesh.n_edges, mesh.n_vertices
-    edge = np.arange(n_edges)
-    first, second = mesh.cells_on_edge.T
-    tail, head = mesh.vertices_on_edge.T
-    ones = np.ones(n_edges)
-
-    outflow = _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, n_cells)
-    circulation = _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, n_vertices)
-    # A wall, whose cells are one, has the share of one cell.
-    quarter = np.where(first == second, 0.125, 0.25) * mesh.dv_edge * mesh.dc_edge
-    vertex = np.repeat(np.arange(n_vertices), 3)
-    return Operators(
-        divergence=_scale_rows(1.0 / mesh.area_cell, outflow),
-        gradient=_scale_rows(1.0 / mesh.dc_edge, _two_per_edge(second, first, ones, -ones, n_cells).T),
-        curl=_scale_rows(1.0 / mesh.area_triangle, circulation),
-        perp=_perp(mesh),
-        kinetic_energy=_scale_rows(1.0 / mesh.area_cell, _two_per_edge(first, second, quarter, quarter, n_cells)),
-        cell_to_edge=csr_array(_two_per_edge(first, second, 0.5 * ones, 0.5 * ones, n_cells).T),
-        cell_to_vertex=_scale_rows(
-            1.0 / mesh.area_triangle,
-            coo_array(
-                (mesh.kite_areas_on_vertex.ravel(), (vertex, mesh.cells_on_vertex.ravel())),
-                shape=(n_vertices, n_cells),
-            ),
-        ),
-        vertex_to_edge=csr_array(
-            coo_array(
-                (np.full(2 * n_edges, 0.5), (np.concatenate([edge, edge]), np.concatenate([tail, head]))),
-                shape=(n_edges, n_vertices),
-            )
-        ),
-    )
+    """The operators of `mesh`, in the units of its radius."""
+    return Operators(mesh)
 
 
 def _two_per_edge(rows_a: Array, rows_b: Array, values_a: Array, values_b: Array, n_rows: int) -> coo_array:
@@ -89,13 +117,6 @@ def _scale_rows(factors: Array, matrix: coo_array) -> csr_array:
     rows = csr_array(matrix)
     rows.data *= np.repeat(factors, np.diff(rows.indptr))
     return rows
-
-
-def _perp(mesh: VoronoiMesh) -> csr_array:
-    filled = np.arange(mesh.edges_on_edge.shape[1]) < mesh.n_edges_on_edge[:, None]
-    row = np.repeat(np.arange(mesh.n_edges), mesh.n_edges_on_edge)
-    values, columns = mesh.weights_on_edge[filled], mesh.edges_on_edge[filled]
-    return csr_array(coo_array((values, (row, columns)), shape=(mesh.n_edges, mesh.n_edges)))
 
 
 VANISHING = 1e-9
@@ -200,8 +221,11 @@ def _velocity_at_cells(
     return zonal, meridional
 
 
-def normal_component(mesh: VoronoiMesh, zonal: Array, meridional: Array) -> Array:
-    """Components along the normals (n_edges,) of vectors at the edges, from their eastward and northward ones."""
+def normal_component(mesh: VoronoiMesh, zonal: Array | float, meridional: Array | float) -> Array:
+    """Components along the normals (n_edges,) of vectors at edges, from the eastward and northward ones.
+
+    Each is one number for all edges, or one for each (n_edges,).
+    """
     return zonal * np.cos(mesh.angle_edge) + meridional * np.sin(mesh.angle_edge)
 
 

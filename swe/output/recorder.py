@@ -310,6 +310,12 @@ def days_of(record: dict[str, object], directory: Path) -> float:
     return _number_in(record, "days", directory)
 
 
+def fields_of(record: dict[str, object] | None) -> list[str] | None:
+    """Names of the fields that a run writes according to its `record`; None, for all, where it does not tell."""
+    fields = None if record is None else record.get("fields")
+    return [str(name) for name in fields] if isinstance(fields, list) else None
+
+
 def _number_in(record: dict[str, object], name: str, directory: Path) -> float:
     value = record.get(name)
     if not isinstance(value, int | float) or not 0.0 <= value < float("inf"):

@@ -34,6 +34,7 @@ UNFOLDED = (0.0, 0.0)
 
 options: dict[str, Any] = {
     "error_model": "numpy",
+    "fastmath": False,
     "forceinline": True,
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,

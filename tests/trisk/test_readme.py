@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import netCDF4
+import numpy as np
 import pytest
 
 README = Path(__file__).parents[2] / "README.md"
@@ -43,3 +45,15 @@ def test_the_other_programs_run(folder: Path, number: int) -> None:
             pytest.skip(f"{name} is not installed")
     done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_budget_of_the_wind_is_in_the_diagnostics(folder: Path) -> None:
+    """The case of the user's own, in fifteen lines at most, leaves the rates of its term."""
+    (program,) = [program for program in programs() if "Forcing" in program]
+    assert len([line for line in program.splitlines() if line.strip()]) <= 15
+    if not (folder / "windy").exists():
+        subprocess.run([sys.executable, "-c", program], cwd=folder, check=True, capture_output=True)
+    with netCDF4.Dataset(folder / "windy" / "diagnostics.nc") as file:
+        assert np.all(file["total_energy_rate_wind"][1:] > 0.0)
+        assert file["total_energy_rate_wind"].units == "m5 s-3"
+        assert file["absolute_vorticity_rate_wind"].long_name == "rate of absolute vorticity by wind"

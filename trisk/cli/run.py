@@ -49,6 +49,14 @@ def run(
     dissipation: Annotated[
         float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
     ] = 0.0,
+    fields: Annotated[
+        str | None,
+        typer.Option(
+            "--fields",
+            help="Fields that snapshots hold, as in thickness,potential_vorticity; by default all of them or, with "
+            "--resume, those of the run.",
+        ),
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace the run in the directory.")] = False,
     resume: Annotated[
         bool,
@@ -68,8 +76,10 @@ def run(
     from cases.parameters import split_settings
     from swe import Simulation
     from swe.configuration import Options
+    from swe.diagnostics.outputs import chosen_fields
     from swe.errors import InputError
-    from swe.output.recorder import days_of, run_to_go_on_with
+    from swe.output.recorder import days_of, fields_of, run_to_go_on_with
+    from swe.tiles.fused import why_not_fused
     from trisk.arguments.meshes import chosen_mesh, mesh_of_run
     from trisk.report.summaries import print_run
 
@@ -89,6 +99,8 @@ def run(
     before = run_to_go_on_with(output, force, resume)
     if days is None:
         days = chosen.recommended_days if before is None else days_of(before, output)
+    names = fields.replace(" ", "").split(",") if fields is not None else fields_of(before)
+    chosen_fields(names)
     if not 0.0 < days < float("inf"):
         raise InputError(f"the run is to last {days:g} days; give a number above 0")
     if resume and recompute_metrics and mesh_file is None:
@@ -98,10 +110,15 @@ def run(
         known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
         chosen,
         output,
+        fields=names,
         overwrite=force,
         resume=resume,
         **options,
     )
+    if not quiet and simulation.loops == "plain":
+        typer.echo(
+            f"{why_not_fused(simulation.model)}: plain loops take the steps, at several times the cost", err=True
+        )
     simulation.run(until=days, progress=not quiet)
     if not quiet:
         print_run(output)
