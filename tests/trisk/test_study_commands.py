@@ -37,7 +37,7 @@ def test_study_of_time_steps(trisk: Call, tmp_path: Path) -> None:
     [
         (("mesh", "williamson2", "--family", "squares"), "no family of meshes named 'squares'"),
         (("mesh", "williamson2", "--cells", "100"), "100 cells are no bisected icosahedron"),
-        (("mesh", "williamson2", "--error-day", "9"), "day 9, which is not within the 5 days"),
+        (("mesh", "williamson2", "--error-day", "9"), "cannot be taken on day 9 of a run of 5 days"),
         (("mesh", "williamson3"), "no case named 'williamson3'"),
         (("time", "williamson5", "--cells", "42", "--dt", "600"), "at least two"),
         (("time", "williamson5", "--dt", "600", "--dt", "300"), "either --mesh FILE or --cells N"),

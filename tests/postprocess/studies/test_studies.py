@@ -165,8 +165,8 @@ def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) ->
         ({"families": ("hexagons",)}, "no family of meshes named 'hexagons'; choose among bisection"),
         ({"cells": (1000,)}, "1000 cells are no bisected icosahedron"),
         ({"cells": (42,)}, "42 cells are no bisected icosahedron of a suitable size"),
-        ({"error_day": 2.0}, "day 2, which is not within the 1 days"),
-        ({"error_day": 0.0}, "day 0, which is not within"),
+        ({"error_day": 2.0}, "cannot be taken on day 2 of a run of 1 days"),
+        ({"error_day": 0.0}, "cannot be taken on day 0 of a run"),
     ],
 )
 def test_plans_that_are_refused(plan: Plan, change: dict, words: str) -> None:
