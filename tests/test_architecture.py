@@ -145,7 +145,7 @@ def test_what_only_makes_pages_is_not_installed() -> None:
     import tomllib
 
     included = tomllib.loads((ROOT / "pyproject.toml").read_text())["tool"]["setuptools"]["packages"]["find"]["include"]
-    folders = [path.name for path in ROOT.iterdir() if path.is_dir()]
+    folders = [path.name for path in ROOT.iterdir() if path.is_dir() and path.suffix != ".egg-info"]
     assert {name for name in folders for pattern in included if fnmatch(name, pattern)} == set(LAYERS)
     tools = {path.stem for path in (ROOT / "docs" / "tools").glob("*.py")}
     assert tools

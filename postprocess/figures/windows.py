@@ -9,6 +9,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
 from mesh.arrays import Array
+from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import from_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.maps import add_polygons, latitude_label
@@ -93,7 +94,7 @@ def draw_cylindrical(axes: Axes, mesh: VoronoiMesh, values: Array, options: dict
 
 def longitude_label(degrees: float) -> str:
     """A longitude, degrees, in print: to the east or to the west of Greenwich."""
-    east = (degrees + 180.0) % 360.0 - 180.0
+    east = round(float(np.degrees(about_zero(np.array(np.radians(degrees))))), 9)
     return f"{abs(east):g}°" if east in (0.0, -180.0) else f"{abs(east):g}°{'E' if east > 0.0 else 'W'}"
 
 

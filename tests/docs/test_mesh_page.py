@@ -40,7 +40,7 @@ def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> Non
 def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page on mesh generation, of few and small meshes."""
     small = {"CIRCLE_CELLS": 200, "RANDOM_CELLS": 162, "OPTIMIZER_CELLS": 162, "RANDOM_SEEDS": range(1)}
-    small |= {"SHAKEN_SEEDS": range(1), "STARTS": [("fibonacci", 0)]}
+    small |= {"SHAKEN_SEEDS": range(1), "CIRCLE_STARTS": [("fibonacci", 0)]}
     small["OPTIMIZER_LIMITS"] = {"lbfgs": Limits(1e-4), "multilevel": Limits(1e-4), "lloyd": Limits(1e-8, 3)}
     for module in (mesh_report, mesh_page):
         for name, value in small.items():

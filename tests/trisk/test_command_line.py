@@ -79,7 +79,7 @@ def test_cases_are_listed_with_their_parameters(trisk) -> None:
     code, out, _ = trisk("cases", "williamson6")
     assert code == 0
     assert "7.848e-06" in out
-    assert "Zonal wave number R." in out
+    assert "Zonal wave number R" in out
     assert "https://doi.org/" in out
 
 
