@@ -42,7 +42,7 @@ def test_fields_are_chosen_and_kept(trisk, mesh_file: Path, tmp_path: Path) -> N
     assert "holds a run with fields = ['thickness', 'relative_vorticity'], not ['thickness']" in err
     code, _, err = trisk("plot", tmp_path / "run")
     assert code == 2
-    assert "history.nc holds no surface_height; run it again with surface_height among its fields (--fields)" in err
+    assert "history.nc holds no potential_vorticity; run it again with potential_vorticity among its fields" in err
     assert trisk("compare", tmp_path / "run", "--json")[0] == 2
 
 
