@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Array
-from swe.equations import kernels
+from swe.diagnostics import integral_kernels
 from swe.equations.model import Diagnosis, ShallowWaterModel
 from swe.equations.terms import Term
 from swe.parallel.folding import folded_sums
@@ -83,7 +83,7 @@ def measure_rates(
     """
     rates = dict.fromkeys((name for name in rate_series(model.terms) if not name.endswith("_time")), 0.0)
     bernoulli, q = np.empty(model.mesh.n_cells), diagnosis.potential_vorticity
-    kernels.bernoulli(state.thickness, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
+    integral_kernels.bernoulli(state.thickness, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
     transport = _work_of_transport(model, tendency.thickness, bernoulli, q)
     rates["mass_rate_transport"] = transport.mass
     if not model.prescribed_wind:
@@ -165,7 +165,7 @@ def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, ac
     model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
-        kernels.work_of(
+        integral_kernels.work_of(
             acceleration,
             flux,
             potential_vorticity,
@@ -187,7 +187,7 @@ def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bern
     mesh = model.closed
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
-        kernels.work_of_transport(
+        integral_kernels.work_of_transport(
             thickness_tendency,
             mesh.area_cell,
             bernoulli,
@@ -212,7 +212,7 @@ def _work_of_forces(
     model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
-        kernels.work_of_forces(
+        integral_kernels.work_of_forces(
             flux,
             acceleration,
             bernoulli,

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from swe.equations import kernels
+from swe.diagnostics import integral_kernels
 from swe.equations.model import Diagnosis, ShallowWaterModel
 from swe.state import State
 
@@ -54,8 +54,8 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     (mass,) = model.processes.exact_sums((mesh.area_cell * h)[None])
     level = _level(model, mass)
     on_cells, on_vertices = np.empty((4, mesh.n_cells)), np.empty((2, mesh.n_vertices))
-    kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
-    kernels.vorticities(
+    integral_kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
+    integral_kernels.vorticities(
         mesh.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
     )
     kinetic, potential, available, of_depth = model.processes.exact_sums(on_cells)

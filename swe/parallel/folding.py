@@ -48,6 +48,29 @@ def add(total: Folded, term: float, coarse: float, fine: float) -> Folded:
     return total[0] + part, total[1] + (((term - part) + fine) - fine), max(total[2], abs(term))
 
 
+@numba.njit(**{**options, "fastmath": {"reassoc"}})
+def _sum_of_parts(parts: Array, count: int) -> float:
+    """Sum of the first `count` of `parts`, multiples of one quantum, by as many lanes as the processor has."""
+    total = 0.0
+    for i in range(count):
+        total += parts[i]
+    return total
+
+
+@numba.njit(**options)
+def add_all(total: Array, terms: Array, count: int, coarse: float, fine: float, spare: Array) -> None:
+    """Add the first `count` of `terms` to coarse and fine sums, `total[0]` and `total[1]`; see `add`.
+
+    The terms are overwritten, and so is `spare`, of the same size.
+    """
+    for i in range(count):
+        part = (terms[i] + coarse) - coarse
+        spare[i] = ((terms[i] - part) + fine) - fine
+        terms[i] = part
+    total[0] += _sum_of_parts(terms, count)
+    total[1] += _sum_of_parts(spare, count)
+
+
 def folds(bound: float, count: int) -> tuple[float, float]:
     """The numbers by which up to `count` terms, whose magnitudes add to no more than `bound`, are folded."""
     if not 0.0 < bound < math.inf:

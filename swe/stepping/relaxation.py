@@ -11,8 +11,8 @@ so the factor is the root near 1 of a quadratic, whose coefficients are sums of 
 import numpy as np
 
 from mesh.arrays import Array
+from swe.diagnostics import integral_kernels
 from swe.diagnostics.invariants import mean_level
-from swe.equations import kernels
 from swe.equations.model import ShallowWaterModel
 from swe.parallel.folding import bounded_sums, folds
 from swe.state import State
@@ -34,6 +34,7 @@ class Relaxation:
         self._model = model
         # Mass is conserved, so heights may count from any level; from the mean one their products are small.
         self._height = model.topography - mean_level(model, state)
+        self._half = 0.5 * model.mesh.dv_edge * model.mesh.dc_edge
         self._folds = np.array([folds(EXCESS * self._energy(state), model.entities)] * 3)
 
     def _energy(self, state: State) -> float:
@@ -49,7 +50,7 @@ class Relaxation:
         model, mesh = self._model, self._model.closed
 
         def along(coarse: Array, fine: Array, parts: Array) -> None:
-            kernels.energy_along(
+            integral_kernels.energy_along(
                 state.thickness,
                 state.normal_velocity,
                 after.thickness,
@@ -57,8 +58,7 @@ class Relaxation:
                 self._height,
                 model.gravity,
                 mesh.area_cell,
-                mesh.dv_edge,
-                mesh.dc_edge,
+                self._half,
                 mesh.cells_on_edge,
                 coarse,
                 fine,

@@ -391,8 +391,7 @@ def test_what_was_sorted_is_named(mesh_file: Path) -> None:
 def test_what_stands_beyond_a_ring_is_passed_over(mesh_file: Path, rings: str, fill: int) -> None:
     original = read_mesh(mesh_file)
     with netCDF4.Dataset(mesh_file, "r+") as file:
-        counts = file["nEdgesOnEdge" if rings == "edgesOnEdge" else "nEdgesOnCell"][:]
-        values = file[rings][:]
+        counts, values = file["nEdgesOnEdge" if rings == "edgesOnEdge" else "nEdgesOnCell"][:], file[rings][:]
         beyond = np.arange(values.shape[1]) >= counts[:, None]
         assert beyond.any()
         file[rings][:] = np.where(beyond, fill, values)

@@ -18,7 +18,7 @@ from mesh.integrals.quadrature import cell_means
 from postprocess.compare import solutions
 from postprocess.compare.comparison import compare_runs, comparison_record, fields_on
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
-from postprocess.compare.solutions import ExactSolution, RunSolution, _short
+from postprocess.compare.solutions import ExactSolution, RunSolution
 from postprocess.figures import compare_maps
 from postprocess.reference import stored_references
 from postprocess.runs.reading import open_run, read_run
@@ -375,11 +375,6 @@ def test_maps_have_one_scale_and_say_what_it_is() -> None:
     assert figure.axes[0].get_images()[0].get_clim() == (0.0, 3.0)
 
 
-def test_long_names_of_runs_keep_their_last_two_parts() -> None:
-    assert _short(Path("runs/tc5")) == "runs/tc5"
-    assert _short(Path("/a/long/way/to/the/folder/of/many/studies/runs/tc5")) == ".../runs/tc5"
-
-
 def test_runs_that_are_open_and_the_table_in_print() -> None:
     coarse, fine = open_run("mountain-162"), open_run("mountain-642")
     comparison = compare_runs(coarse, fine, reference=fine, days=[0.5])
@@ -399,8 +394,3 @@ def test_open_runs_are_checked_as_folders_are(tmp_path: Path) -> None:
     shutil.copy("mountain-642/mesh.nc", tmp_path / "mixed" / "mesh.nc")
     with pytest.raises(InputError, match=r"has 162 values of thickness, but mesh\.nc beside it needs 642"):
         compare_runs(open_run(tmp_path / "mixed"), "mountain-642")
-
-
-def test_nothing_to_compare() -> None:
-    with pytest.raises(InputError, match="there is nothing to compare; name a run"):
-        compare_runs()

@@ -1,0 +1,240 @@
+"""Compiled loops of global integrals: their terms, and sums of them that depend on no order (`swe.parallel.folding`).
+
+Letters are those of `swe.equations.kernels`.
+"""
+
+import numba
+import numpy as np
+
+from mesh.arrays import Array, Index, Signs
+from swe.parallel.folding import NOTHING, add, add_all
+
+CHUNK = 256
+"""Terms that are summed together; they stay in the first cache."""
+
+inlined = numba.njit(error_model="numpy", fastmath={"contract"}, forceinline=True)
+compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
+
+
+@inlined
+def _energy_terms_of_edges(
+    start: int,
+    count: int,
+    h: Array,
+    u: Array,
+    h_after: Array,
+    u_after: Array,
+    half: Array,
+    cells_on_edge: Index,
+    first: Array,
+    second: Array,
+    third: Array,
+) -> None:
+    """Coefficients of c, c^2 and c^3 in l_e d_e h_e u_e^2 / 2 along increments, of `count` edges from `start` on."""
+    for m in range(count):
+        e = start + m
+        i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
+        h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * ((h_after[i] - h[i]) + (h_after[j] - h[j]))
+        v = u_after[e] - u[e]
+        first[m] = half[e] * u[e] * (2.0 * h_e * v + p_e * u[e])
+        second[m] = half[e] * v * (h_e * v + 2.0 * p_e * u[e])
+        third[m] = half[e] * v * v * p_e
+
+
+@inlined
+def _energy_terms_of_cells(
+    start: int, count: int, h: Array, h_after: Array, height: Array, g: float, A: Array, first: Array, second: Array
+) -> None:
+    """Coefficients of c and c^2 in g A_i h_i (h_i/2 + height_i), of `count` cells from `start` on."""
+    for m in range(count):
+        i = start + m
+        p = h_after[i] - h[i]
+        first[m] = g * A[i] * p * (h[i] + height[i])
+        second[m] = 0.5 * g * A[i] * p * p
+
+
+@compiled
+def energy_along(
+    h: Array,
+    u: Array,
+    h_after: Array,
+    u_after: Array,
+    height: Array,
+    g: float,
+    A: Array,
+    half: Array,
+    cells_on_edge: Index,
+    coarse: Array,
+    fine: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v; see `work_of`.
+
+    The increments p and v lead to `h_after` and `u_after`. The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges,
+    `half` being l_e d_e / 2, and of g A_i h_i (h_i/2 + height_i) over cells. Largest terms are not told.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        sums[k] = 0.0
+        terms, spare = np.empty((3, CHUNK)), np.empty(CHUNK)
+        last = (k + 1) * u.size // blocks
+        for start in range(k * u.size // blocks, last, CHUNK):
+            count = min(CHUNK, last - start)
+            _energy_terms_of_edges(
+                start,
+                count,
+                h,
+                u,
+                h_after,
+                u_after,
+                half,
+                cells_on_edge,
+                terms[0],
+                terms[1],
+                terms[2],
+            )
+            for m in range(3):
+                add_all(sums[k, m], terms[m], count, coarse[m], fine[m], spare)
+        last = (k + 1) * h.size // blocks
+        for start in range(k * h.size // blocks, last, CHUNK):
+            count = min(CHUNK, last - start)
+            _energy_terms_of_cells(start, count, h, h_after, height, g, A, terms[0], terms[1])
+            for m in range(2):
+                add_all(sums[k, m], terms[m], count, coarse[m], fine[m], spare)
+
+
+@compiled
+def energies(A: Array, h: Array, b: Array, K: Array, level: float, result: Array) -> None:
+    """A_i times h_i K_i, h_i (h_i/2 + b_i), (h_i + b_i - level)^2 and h_i^2 at cells: rows of `result` (4, n_cells)."""
+    for i in numba.prange(h.size):
+        volume = A[i] * h[i]
+        result[0, i] = volume * K[i]
+        result[1, i] = volume * (0.5 * h[i] + b[i])
+        result[2, i] = A[i] * (h[i] + b[i] - level) ** 2
+        result[3, i] = volume * h[i]
+
+
+@compiled
+def vorticities(A: Array, f: Array, zeta: Array, q: Array, result: Array) -> None:
+    """A_v (f_v + zeta_v), and that times q_v, at vertices: rows of `result` (2, n_vertices)."""
+    for v in numba.prange(q.size):
+        result[0, v] = A[v] * (f[v] + zeta[v])
+        result[1, v] = result[0, v] * q[v]
+
+
+@compiled
+def work_of(
+    a: Array,
+    F: Array,
+    q: Array,
+    edges_on_vertex: Index,
+    sign: Signs,
+    dc_edge: Array,
+    dv_edge: Array,
+    coarse: Array,
+    fine: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 3, 3) of what accelerations a_e do to total energy, absolute vorticity and potential enstrophy.
+
+    The sums of l_e d_e F_e a_e over edges, of the circulation C_v = sum_e t_ev d_e a_e over vertices, and of q_v C_v.
+    Each is folded by `coarse` and `fine` (3,), see `swe.parallel.folding`.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        energy = vorticity = enstrophy = NOTHING
+        for e in range(k * a.size // blocks, (k + 1) * a.size // blocks):
+            energy = add(energy, dv_edge[e] * dc_edge[e] * F[e] * a[e], coarse[0], fine[0])
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            circulation = 0.0
+            for j in range(3):
+                e = edges_on_vertex[v, j]
+                circulation += sign[v, j] * dc_edge[e] * a[e]
+            vorticity = add(vorticity, circulation, coarse[1], fine[1])
+            enstrophy = add(enstrophy, q[v] * circulation, coarse[2], fine[2])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part], sums[k, 2, part] = energy[part], vorticity[part], enstrophy[part]
+
+
+@compiled
+def work_of_transport(
+    dh: Array,
+    A: Array,
+    B: Array,
+    q: Array,
+    cells_on_vertex: Index,
+    kites: Array,
+    coarse: Array,
+    fine: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 3, 3) of what tendencies of thickness do to mass, total energy and potential enstrophy.
+
+    The sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices; folded as
+    those of `work_of`.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        mass = energy = enstrophy = NOTHING
+        for i in range(k * dh.size // blocks, (k + 1) * dh.size // blocks):
+            mass = add(mass, A[i] * dh[i], coarse[0], fine[0])
+            energy = add(energy, A[i] * B[i] * dh[i], coarse[1], fine[1])
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            volume = 0.0
+            for j in range(3):
+                volume += kites[v, j] * dh[cells_on_vertex[v, j]]
+            enstrophy = add(enstrophy, -0.5 * q[v] * q[v] * volume, coarse[2], fine[2])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part], sums[k, 2, part] = mass[part], energy[part], enstrophy[part]
+
+
+@compiled
+def bernoulli(h: Array, b: Array, K: Array, g: float, B: Array) -> None:
+    """B_i = g (h_i + b_i) + K_i at cells."""
+    for i in numba.prange(B.size):
+        B[i] = g * (h[i] + b[i]) + K[i]
+
+
+@compiled
+def work_of_forces(
+    F: Array,
+    du: Array,
+    B: Array,
+    q: Array,
+    cells_on_edge: Index,
+    edges_on_vertex: Index,
+    sign: Signs,
+    dc_edge: Array,
+    dv_edge: Array,
+    coarse: Array,
+    fine: Array,
+    sums: Array,
+) -> None:
+    """Parts (blocks, 5, 3) of what minus the gradient of B, and what else is in du, do: see `work_of`.
+
+    To energy and absolute vorticity the former, to these and potential enstrophy the latter. The gradient's share of
+    potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
+    """
+    blocks = sums.shape[0]
+    for k in numba.prange(blocks):
+        energy = vorticity = other_energy = other_vorticity = other_enstrophy = NOTHING
+        for e in range(k * du.size // blocks, (k + 1) * du.size // blocks):
+            i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
+            outflow = dv_edge[e] * F[e]
+            drop = B[i] - B[j]
+            energy = add(energy, outflow * drop, coarse[0], fine[0])
+            other_energy = add(other_energy, outflow * (dc_edge[e] * du[e] - drop), coarse[2], fine[2])
+        for v in range(k * q.size // blocks, (k + 1) * q.size // blocks):
+            circulation = other_circulation = 0.0
+            for m in range(3):
+                e = edges_on_vertex[v, m]
+                drop = B[cells_on_edge[e, 0]] - B[cells_on_edge[e, 1]]
+                circulation += sign[v, m] * drop
+                other_circulation += sign[v, m] * (dc_edge[e] * du[e] - drop)
+            vorticity = add(vorticity, circulation, coarse[1], fine[1])
+            other_vorticity = add(other_vorticity, other_circulation, coarse[3], fine[3])
+            other_enstrophy = add(other_enstrophy, q[v] * other_circulation, coarse[4], fine[4])
+        for part in range(3):
+            sums[k, 0, part], sums[k, 1, part] = energy[part], vorticity[part]
+            sums[k, 2, part], sums[k, 3, part] = other_energy[part], other_vorticity[part]
+            sums[k, 4, part] = other_enstrophy[part]
