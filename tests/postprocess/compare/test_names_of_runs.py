@@ -8,8 +8,6 @@ from postprocess.compare.comparison import compare_runs
 from postprocess.compare.solutions import _short
 from swe.errors import InputError
 
-DAYS = 1.0
-
 
 def test_long_names_of_runs_keep_their_last_two_parts() -> None:
     assert _short(Path("runs/tc5")) == "runs/tc5"
