@@ -20,6 +20,7 @@ ROOMS = {
 """Rooms of each package; one may use those that stand before it. The package itself is the first."""
 
 MOST_MODULES = 12
+MOST_LINES = 400
 
 
 def imported_packages(source: str) -> set[str]:
@@ -122,6 +123,13 @@ def test_a_circle_is_found() -> None:
 def test_rooms_are_small(layer: str) -> None:
     counts = Counter(room_of(module) for module in modules_of(layer))
     assert max(counts.values()) <= MOST_MODULES, counts
+
+
+def test_files_are_short() -> None:
+    folders = [ROOT / name for name in (*LAYERS, "tests", "docs")]
+    lines = {path: len(path.read_text().splitlines()) for folder in folders for path in folder.rglob("*.py")}
+    assert len(lines) > 200
+    assert {path: count for path, count in lines.items() if count > MOST_LINES} == {}
 
 
 def test_a_relative_import_is_found() -> None:
