@@ -1,4 +1,4 @@
-"""What determines a run besides mesh and case: options as a user gives them, and as the record of a run has them."""
+"""What determines a run besides mesh and case: options as the user gives them, and as the run record stores them."""
 
 from dataclasses import dataclass
 from typing import Literal, get_args
@@ -17,10 +17,10 @@ DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
 DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
 
 Integrator = Literal["rk4", "rrk4"]
-"""Classical Runge-Kutta, or that with relaxation, which keeps total energy to round-off."""
+"""Classical Runge-Kutta, or the same with relaxation, which conserves total energy to round-off."""
 
 CHOICES = {"sampling": get_args(Sampling), "integrator": get_args(Integrator)}
-"""Options that are words."""
+"""Options whose values are words."""
 
 
 @dataclass(frozen=True)
@@ -38,9 +38,9 @@ class Configuration:
 
 @dataclass(frozen=True)
 class Options:
-    """Options of `swe.run.simulation.Simulation`, which tells what they mean; numbers of any type become floats.
+    """Options of `swe.run.simulation.Simulation`, which documents them; numbers of any type become floats.
 
-    Raises `InputError` where one has the wrong type or is out of range.
+    Raises `InputError` if one has the wrong type or is out of range.
     """
 
     time_step: float | None = None
@@ -71,14 +71,14 @@ class Options:
             object.__setattr__(self, name, number)
 
     def require_suitable(self, case_name: str, prescribed_wind: bool) -> None:
-        """Raise `InputError` where options do not go with the case."""
+        """Raise `InputError` if options do not suit the case."""
         if prescribed_wind and (self.integrator != "rk4" or self.anticipation > 0.0 or self.dissipation > 0.0):
             raise InputError(
                 f"the wind of {case_name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
             )
 
     def require_suitable_mesh(self, mesh: VoronoiMesh) -> None:
-        """Raise `InputError` where a term divides by the length of edges that have none."""
+        """Raise `InputError` if a term would divide by the length of edges of zero length."""
         none = vanishing_edges(mesh)
         if len(none) and (self.anticipation > 0.0 or self.dissipation > 0.0):
             raise InputError(
@@ -88,7 +88,7 @@ class Options:
             )
 
     def with_time_step(self, time_step: float) -> Configuration:
-        """What determines the run, once it has a time step."""
+        """The configuration of the run, once its time step is known."""
         return Configuration(
             time_step,
             self.snapshot_interval,

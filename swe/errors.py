@@ -1,26 +1,26 @@
-"""What goes wrong in setting up and in running a simulation."""
+"""Errors and warnings raised while a simulation is set up and run."""
 
 import signal
 
 
 class InputError(ValueError):
-    """A request for a run is wrong; the message says what, which value and what to do."""
+    """The request for a run is invalid; the message says what is wrong, which value, and what to do."""
 
 
 SetupError = InputError
-"""The name of earlier versions."""
+"""Its name in earlier versions."""
 
 
 class SetupWarning(UserWarning):
-    """A request for a run will hardly do what is wanted; the message says which value would."""
+    """The run as requested is unlikely to do what is wanted; the message suggests a value that would."""
 
 
 class RunError(RuntimeError):
-    """The run itself failed; the message says when, where and why. What was written before stays readable."""
+    """The run itself failed; the message says when, where and why. Output already written stays readable."""
 
 
 class RunStopped(Exception):  # noqa: N818
-    """A run was asked to stop, and did so between two steps; the message says when, and where its checkpoint is."""
+    """A run was asked to stop and did so between two steps; the message says when, and where its checkpoint is."""
 
     def __init__(self, message: str, cause: signal.Signals) -> None:
         super().__init__(message)

@@ -11,8 +11,8 @@ from mesh.arrays import Array
 class State:
     """`thickness` at cells (n_cells,), m, and `normal_velocity` at edges (n_edges,), m/s.
 
-    The normal velocity is positive from `cells_on_edge[e, 0]` to `[e, 1]`. A tendency has the same shape, per
-    second.
+    The normal velocity is positive from `cells_on_edge[e, 0]` to `[e, 1]`. A tendency takes the same form, in
+    units per second.
     """
 
     thickness: Array

@@ -9,7 +9,7 @@ from swe.state import State
 
 
 class Anticipation(Term):
-    """The Coriolis flux carries q_e - seconds (u . grad q)_e, what flows to the edge within so many `seconds`."""
+    """The Coriolis flux carries q_e - seconds (u . grad q)_e, the value that the flow brings within `seconds`."""
 
     name = "anticipation"
     meaning = "by the anticipation of potential vorticity"

@@ -11,11 +11,11 @@ from swe.state import State
 
 
 class BiharmonicDissipation(Term):
-    """Dissipation with the `coefficient` nu, m4/s, after each step, so that what either does to energy is known.
+    """Dissipation with the `coefficient` nu, m4/s, after each step, so that the effect of each on energy is known.
 
-    On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u) takes
-    energy away, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity stay. Like its parts, curl
-    and gradient, lap is consistent in the mean over neighbours, not at every edge.
+    On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u)
+    removes energy, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity are conserved. Like its
+    parts, curl and gradient, lap is consistent in the mean over neighbours, not at every edge.
     """
 
     name = "dissipation"
@@ -31,7 +31,7 @@ class BiharmonicDissipation(Term):
         self._once, self._twice = np.empty(mesh.n_edges), np.empty(mesh.n_edges)
 
     def acceleration(self, velocity: Array) -> Array:
-        """-nu lap(lap u) at edges (n_edges,), m/s2; the array is used again by the next call."""
+        """-nu lap(lap u) at edges (n_edges,), m/s2; the next call overwrites the array."""
         self.laplacian(velocity, self._once)
         self.laplacian(self._once, self._twice)
         self._twice *= -self.coefficient
@@ -48,10 +48,10 @@ class BiharmonicDissipation(Term):
 
     @property
     def largest_time_step(self) -> float:
-        """Seconds up to which a step is stable: 2 / (nu L^2), with a bound L of the eigenvalues of lap.
+        """Longest stable time step, s: 2 / (nu L^2), where L bounds the eigenvalues of lap.
 
-        By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, the gradient
-        of curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
+        By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, and that of
+        curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
         """
         mesh = self._closed
         flow, circulation = mesh.dv_edge / mesh.dc_edge, mesh.dc_edge / mesh.dv_edge

@@ -1,9 +1,9 @@
 """Compiled loops of the scheme, one per operator: each entity gathers from its own neighbours, in file order.
 
-The plain twin of `swe.tiles.tile_kernels`, and what diagnostics are computed by. No two threads write to one place, so
-results do not depend on the number of threads. Nothing is allocated: every kernel but `largest_rate` writes into the
-array that it is given last. `h`, `u`, `q`, ... are named as in the equations of DESIGN and Ringler et al. (2010); the
-letters are thickness, normal velocity and potential vorticity.
+The plain twin of `swe.tiles.tile_kernels`, also used for the diagnostics. No two threads write to the same place, so
+results do not depend on the number of threads. Nothing is allocated: kernels that compute a field write it into their
+last argument. The letters are those of the equations in DESIGN and Ringler et al. (2010): `h` is thickness, `u` normal
+velocity, `q` potential vorticity, and so on.
 """
 
 import numba
@@ -125,7 +125,7 @@ def anticipate(
     dv_edge: Array,
     q_edge: Array,
 ) -> None:
-    """Take time (u . grad q)_e from q_e at edges: q is anticipated to be what flows there within `time` seconds."""
+    """Subtract time (u . grad q)_e from q_e at edges: q is anticipated as what the flow brings within `time` s."""
     for e in numba.prange(u.size):
         tangential = 0.0
         for j in range(n_edges_on_edge[e]):
@@ -137,7 +137,7 @@ def anticipate(
 
 @compiled
 def move_along(h: Array, u: Array, h_after: Array, u_after: Array, factor: float) -> int:
-    """Move h and u by `factor` of their way to `h_after` and `u_after`; give the number of unsound values, as below."""
+    """Move h and u by `factor` of the way to `h_after` and `u_after`; return what `count_unsound` would count."""
     count = 0
     for i in numba.prange(h.size):
         h[i] += factor * (h_after[i] - h[i])
@@ -188,7 +188,7 @@ def add_scaled(y: Array, factor: float, k: Array, result: Array) -> None:
 
 @compiled
 def count_unsound(h: Array, u: Array) -> int:
-    """Number of thicknesses that are not positive and of values that are not finite."""
+    """Number of non-finite values and non-positive thicknesses."""
     count = 0
     for i in numba.prange(h.size):
         if not (0.0 < h[i] < np.inf):

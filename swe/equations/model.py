@@ -18,10 +18,10 @@ from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
 
 STABLE_COURANT_NUMBER = 2.0 / 3.0**0.5
-"""Linear gravity waves on regular hexagons are stable under classical RK4 up to here, see `courant_number`."""
+"""Linear gravity waves on regular hexagons are stable under classical RK4 up to this value, see `courant_number`."""
 
 ENTITIES_PER_CELL = 16
-"""More than there are cells, edges and vertices together for each cell: 6 on a sphere, 13 for a hexagon alone."""
+"""An upper bound on cells, edges and vertices together per cell: 6 on a sphere, 13 for a single hexagon."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class ShallowWaterModel:
     ----------
     mesh
         Voronoi mesh, scaled to the radius of the sphere (`VoronoiMesh.scaled`). Cells may be missing beyond its edges
-        (`mesh.discrete.walls`): nothing flows there, and the velocity of a state must be zero.
+        (`mesh.discrete.walls`): nothing flows there, and a state must have zero velocity there.
     topography
         Height of the bottom at cells (n_cells,), m.
     coriolis
@@ -54,29 +54,29 @@ class ShallowWaterModel:
     gravity
         Acceleration of gravity, m/s2.
     prescribed_wind
-        Whether the velocity stays as it is, so that thickness is advected and there are no gravity waves.
+        Whether the velocity stays fixed, so that thickness is advected and there are no gravity waves.
     scheme
         Kinetic energy and mass flux.
     terms
-        What is added to the bracket, such as `Anticipation`, `BiharmonicDissipation` or a `Forcing` of the user's.
+        Terms added to the bracket, such as `Anticipation`, `BiharmonicDissipation` or a user's own `Forcing`.
     processes
-        Those among which the mesh is divided.
+        The processes that share the mesh.
 
     Attributes
     ----------
     closed
-        The mesh as loops read it, see `mesh.discrete.walls.closed_mesh`.
+        The mesh as the loops read it, see `mesh.discrete.walls.closed_mesh`.
     area, bottom_volume, planetary_vorticity_magnitude
         Area of the mesh, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
         m2/s.
 
     entities
-        At least the number of cells, edges and vertices of the mesh together.
+        An upper bound on the number of cells, edges and vertices of the mesh together.
 
     Raises
     ------
     InputError
-        Where a field has the wrong shape or type or is not finite, two terms have one name, or one accelerates a
+        If a field has the wrong shape or type or is not finite, two terms share a name, or a term accelerates a
         prescribed wind.
     """
 
@@ -127,7 +127,7 @@ class ShallowWaterModel:
         """Terms that act after each step."""
         return tuple(term for term in self.terms if term.after_steps)
 
-    # The plain tendency alone needs these; a run that takes the fused path saves their memory.
+    # Only the plain tendency needs these; a run on the fused path saves their memory.
 
     @cached_property
     def _thickness_flux(self) -> Array:
@@ -140,7 +140,7 @@ class ShallowWaterModel:
     def tendency(self, state: State, result: State, time: float = 0.0) -> None:
         """Write the time derivative of `state` at `time`, s, into `result`: the bracket and the terms in stages.
 
-        Allocates nothing after the first time, but for what terms do.
+        Allocates nothing after the first call, except what the terms allocate.
         """
         self._update_thickness_tendency(state, result)
         if self.prescribed_wind:
@@ -151,7 +151,7 @@ class ShallowWaterModel:
             self._add(term, state, time, result)
 
     def tendency_of(self, term: Term, state: State, time: float = 0.0) -> State:
-        """What `term` alone does to `state` at `time`, s, as a new state per second."""
+        """The tendency of `state` at `time`, s, due to `term` alone, as a new state per second."""
         mesh, result = self.mesh, State(np.zeros(self.mesh.n_cells), np.zeros(self.mesh.n_edges))
         self._update_vorticity(state)
         q_edge, nothing = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells)
@@ -185,7 +185,7 @@ class ShallowWaterModel:
         )
 
     def _update_velocity_tendency(self, state: State, result: State) -> None:
-        """Write the time derivative of velocity; the flux of thickness is there already."""
+        """Write the time derivative of velocity; the thickness flux has been computed already."""
         q_edge = self._potential_vorticity_edge
         self._update_vorticity(state)
         kernels.mean_of_vertices(self._potential_vorticity, self.mesh.vertices_on_edge, q_edge)
@@ -197,7 +197,7 @@ class ShallowWaterModel:
         )
 
     def _update_velocity(self, h: Array, b: Array, K: Array, q_edge: Array, gravity: float, result: Array) -> None:
-        """Write the Coriolis flux of the thickness flux less the gradient of g (h + b) + K."""
+        """Write the Coriolis flux of the thickness flux minus the gradient of g (h + b) + K."""
         mesh = self.closed
         kernels.velocity_tendency(
             h,
@@ -213,7 +213,7 @@ class ShallowWaterModel:
             mesh.dc_edge,
             result,
         )
-        result[self._walls] = 0.0  # where differences of a cell with itself leave round-off
+        result[self._walls] = 0.0  # where the difference of a cell and itself leaves round-off
 
     def diagnose(self, state: State) -> Diagnosis:
         """Fields that follow from `state`, as new arrays."""
@@ -258,8 +258,8 @@ def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_w
     """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
 
     Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
-    frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis 2 sqrt(2). Under a prescribed wind,
-    which has no waves, it is the largest |u| dt / d. `mesh` is one without gaps (`closed_mesh`).
+    frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis is 2 sqrt(2). Under a prescribed wind,
+    which has no waves, it is the largest |u| dt / d. `mesh` must have no gaps (`closed_mesh`).
     """
     if not np.isfinite(state.normal_velocity).all():
         return float("nan")
@@ -269,7 +269,7 @@ def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_w
 
 
 def check_field(name: str, values: Array, size: int) -> None:
-    """Raise `InputError` where `values` are not `size` finite numbers of double precision."""
+    """Raise `InputError` unless `values` are `size` finite numbers of double precision."""
     if not isinstance(values, np.ndarray):
         raise InputError(f"{name} is {type(values).__name__}; it must be an array of {size} numbers")
     if values.shape != (size,):

@@ -1,7 +1,7 @@
 """What is wrong with a state, in words: thickness and velocity, and thickness at the vertices of obtuse triangles.
 
-The kites of an obtuse triangle have signs, so that thickness at its vertex, their mean, is outside of what the three
-cells have, and may turn negative where all of them are positive.
+Some kites of an obtuse triangle have negative area, so the thickness at its vertex, a kite-weighted mean, can lie
+outside the range of the three cells, and can turn negative while all three are positive.
 """
 
 import numpy as np
@@ -11,7 +11,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 from swe.state import State
 
 THIN = 0.5
-"""Thickness at a vertex below this part of that of the thinnest of its cells is told of before a run."""
+"""A vertex thinner than this fraction of its thinnest cell causes a warning before a run."""
 
 
 def problem_with_state(mesh: VoronoiMesh, state: State) -> str | None:
@@ -29,12 +29,12 @@ def problem_with_state(mesh: VoronoiMesh, state: State) -> str | None:
 
 
 def has_negative_kites(mesh: VoronoiMesh) -> bool:
-    """Whether thickness at a vertex may be outside of what its cells have."""
+    """Whether thickness at a vertex may lie outside the range of its cells."""
     return bool(mesh.kite_areas_on_vertex.min() < 0.0)
 
 
 def problem_at_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
-    """Where `thickness` (n_cells,) is not positive at a vertex, in words as above; None where it is not at cells."""
+    """Where `thickness` (n_cells,) is not positive at a vertex, in words; None if nowhere, or if a cell fails."""
     if not (thickness.min() > 0.0 and np.isfinite(thickness.max())):
         return None
     at_vertices = vertex_thickness(mesh, thickness)
@@ -53,7 +53,7 @@ def problem_at_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
 
 
 def warning_of_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
-    """What to say of `thickness` that is positive at vertices, but thin at some; None where there is nothing."""
+    """A warning of `thickness` that is positive at vertices but thin at some; None if there are no such vertices."""
     around = thickness[mesh.cells_on_vertex].min(axis=1)
     thin = int(np.count_nonzero(vertex_thickness(mesh, thickness) < THIN * around))
     if thin == 0:

@@ -1,4 +1,4 @@
-"""The tendency of the energy-conserving scheme written as the equation, on sparse operators.
+"""The tendency of the energy-conserving scheme, written like its equations, with sparse operators.
 
 This is the plain statement of the scheme of Thuburn et al. (2009) and Ringler et al. (2010); the kernels of
 `swe.equations.kernels` compute the same and are tested against it.
@@ -10,7 +10,7 @@ from swe.state import State
 
 
 def tendency(state: State, operators: Operators, topography: Array, coriolis: Array, gravity: float) -> State:
-    """Time derivative of thickness (m/s) at cells and of normal velocity (m/s2) at edges.
+    """Time derivative of thickness at cells, m/s, and of normal velocity at edges, m/s2.
 
     `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Ringler et al. (2010),
     equations (19), (20) and (49).

@@ -1,7 +1,7 @@
-"""Terms: what is added to the bracket of the scheme, each under a name of its own.
+"""Terms added to the bracket of the scheme, each under a name of its own.
 
 The tendency of a model is the bracket plus the sum of its terms. Most act in every stage of a step; a term may ask to
-act after each step instead (`after_steps`). The diagnostics of a run hold what each term does to the global integrals.
+act after each step instead (`after_steps`). The diagnostics of a run show what each term does to the global integrals.
 """
 
 from collections.abc import Callable
@@ -17,10 +17,10 @@ INTEGRALS = ("mass", "total_energy", "potential_enstrophy", "absolute_vorticity"
 """Global integrals whose budgets are kept."""
 
 RESERVED = ("transport", "exchange", "coriolis", "gradient", "anticipation", "dissipation", "time")
-"""Names of what is in every budget."""
+"""Names that every budget uses."""
 
 FieldFunction = Callable[[VoronoiMesh, State, float], Array]
-"""Of the mesh, in metres, the state and the time, s, since the start."""
+"""A function of the mesh, in metres, the state, and the time since the start, s."""
 
 
 class Term:
@@ -29,7 +29,7 @@ class Term:
     Attributes
     ----------
     name
-        In the names of the diagnostics, such as `total_energy_rate_wind`.
+        Part of the names of the diagnostics, such as `total_energy_rate_wind`.
     meaning
         What changes the integrals, as the end of a sentence: "by the wind".
     changes
@@ -46,35 +46,35 @@ class Term:
     def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
         """Change the potential vorticity at edges (n_edges,) that the Coriolis flux carries, in place.
 
-        `potential_vorticity` is that of `state` at vertices. Nothing by default.
+        `potential_vorticity` is that of `state` at vertices. Does nothing by default.
         """
 
     def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
-        """Add the term at `state` on `mesh` and `time`, seconds since the start, to `tendency`. Nothing by default."""
+        """Add the term at `state` and `time`, seconds since the start, to `tendency`; does nothing by default."""
 
     def apply(self, state: State, time_step: float) -> None:
-        """Change `state` by what a term that acts after steps does in `time_step` seconds."""
+        """Change `state` by the effect over `time_step` seconds of a term that acts after steps."""
         raise NotImplementedError(f"the term {self.name} acts in the stages of a step")
 
 
 class Forcing(Term):
-    """A term of the user's own, made of plain functions of mesh, state and time, which must not change them.
+    """A user's own term, made of plain functions of mesh, state and time, which must not change their arguments.
 
     Parameters
     ----------
     name
         Its name in the diagnostics: letters, digits and underscores.
     acceleration
-        Gives what is added to du/dt at edges (n_edges,), m/s2, positive from `cells_on_edge[e, 0]` to `[e, 1]`;
+        Returns what is added to du/dt at edges (n_edges,), m/s2, positive from `cells_on_edge[e, 0]` to `[e, 1]`;
         `mesh.discrete.operators.normal_component` projects vectors.
     source
-        Gives what is added to dh/dt at cells (n_cells,), m/s.
+        Returns what is added to dh/dt at cells (n_cells,), m/s.
 
     Raises
     ------
     InputError
-        Where the name cannot be used or there is no function; when the model is made, or in the course of a run, where
-        a function fails or does not give one number for each edge or cell.
+        If the name cannot be used or there is no function; later, when the model is made or during a run, if a function
+        fails or does not return one number for each edge or cell.
     """
 
     def __init__(
@@ -101,7 +101,7 @@ class Forcing(Term):
             tendency.thickness[:] += self._values("source", mesh, state, time, mesh.n_cells)
 
     def _values(self, what: str, mesh: VoronoiMesh, state: State, time: float, size: int) -> Array:
-        """What a function of the user gives, one number for all or for each of `size` entities."""
+        """The values of a user's function: one number for all entities, or one for each of `size`."""
         try:
             values = np.asarray(getattr(self, what)(mesh, state, time), dtype=np.float64)
         except InputError:

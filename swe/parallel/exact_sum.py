@@ -1,4 +1,4 @@
-"""Sums without rounding, so that they depend neither on the order of the terms nor on threads."""
+"""Sums without rounding, so that they depend neither on the order of the terms nor on the number of threads."""
 
 import math
 
@@ -11,16 +11,16 @@ WORD = 32
 """Bits of a word of the accumulator; its integers of 64 bits can take 2^31 terms."""
 
 LOWEST_EXPONENT = -1074
-"""Of the last bit of the smallest double."""
+"""Exponent of the last bit of the smallest double."""
 
 PARTS = 16
-"""Parts of the values that threads may take."""
+"""Number of parts into which the values are divided among threads."""
 
 WORDS = (1024 - LOWEST_EXPONENT) // WORD + 2
 
 
 def exact_sum(values: Array) -> float:
-    """Sum of float64 `values`, rounded once; what a plain sum gives where some are not finite.
+    """Sum of float64 `values`, rounded once; if some are not finite, the result of a plain sum.
 
     Every value is an integer times a power of two, and is added as such to a long integer of `WORDS` words.
     """
@@ -37,7 +37,7 @@ def exact_sums(rows: Array) -> list[float]:
 
 
 def _rounded(words: Index) -> float:
-    """The double nearest to the number that words (WORDS,) with carries make; infinite where that is too large."""
+    """The double nearest to the number held in words (WORDS,) with carries; infinite if that is too large."""
     total = 0
     for word in reversed(words.tolist()):
         total = (total << WORD) + word
@@ -51,7 +51,7 @@ def _rounded(words: Index) -> float:
 def _words(bits: Index) -> tuple[Index, Index]:
     """Words (PARTS, k, WORDS), lowest first and with carries, of the sums of parts of k rows of doubles.
 
-    The doubles are given by their bits. And which of the parts (PARTS, k) have finite values only.
+    The doubles are given by their bits. Also returns which of the parts (PARTS, k) hold finite values only.
     """
     k, size = bits.shape
     words, finite = np.zeros((PARTS, k, WORDS), np.int64), np.ones((PARTS, k), np.int64)
@@ -64,10 +64,10 @@ def _words(bits: Index) -> tuple[Index, Index]:
 
 @numba.njit(cache=True)
 def _add(bits: Index, words: Index) -> int:
-    """Add doubles given by their bits to `words`; 0 where some are not finite, else 1.
+    """Add doubles given by their bits to `words`; return 0 if some are not finite, else 1.
 
-    Shifted by up to 31 bits a mantissa covers three words. Neighbours mostly begin in the same one, so three sums are
-    kept aside until another word comes up.
+    Shifted by up to 31 bits, a mantissa spans three words. Consecutive values mostly start in the same word, so three
+    partial sums are held until the word changes.
     """
     at = 0
     low_sum = middle_sum = high_sum = 0
@@ -79,7 +79,7 @@ def _add(bits: Index, words: Index) -> int:
         if exponent > 0:
             mantissa |= 1 << 52
             exponent -= 1
-        word, shift = exponent >> 5, exponent & 31  # division by WORD, and what it leaves
+        word, shift = exponent >> 5, exponent & 31  # quotient and remainder of division by WORD
         if word != at:
             words[at] += low_sum
             words[at + 1] += middle_sum

@@ -1,8 +1,8 @@
-"""Sums of many terms that come out the same in whatever order, and in how many parts, the terms are added.
+"""Sums of many terms that come out the same in whatever order, and in however many parts, the terms are added.
 
-Added to M = 3/2 2^p and taken less M again, a double is rounded to a multiple of 2^(p - 52). Multiples of one quantum
-add without rounding as long as their sum stays below 2^53 of them. So each term is folded into a coarse and a fine
-part by two such numbers, and what is left beneath is far below the round-off of the terms: Demmel and Nguyen (2013),
+Adding M = 3/2 2^p to a double and subtracting it again rounds the double to a multiple of 2^(p - 52). Multiples of one
+quantum add without rounding as long as their sum stays below 2^53 quanta. Two such numbers therefore fold each term
+into a coarse and a fine part, and the remainder is far below the round-off of the terms: Demmel and Nguyen (2013),
 Fast reproducible floating-point summation.
 """
 
@@ -17,16 +17,16 @@ from mesh.arrays import Array
 from swe.parallel.processes import Processes
 
 BLOCKS = 64
-"""Parts in which sums are taken, so that threads share the work; results do not depend on it."""
+"""Number of parts in which sums are taken, so that threads share the work; results do not depend on it."""
 
 DIGITS = 53
-"""Of a double, binary."""
+"""Binary digits of a double."""
 
 Folded = tuple[float, float, float]
 """Coarse and fine sum, and the largest magnitude of a term."""
 
 NOTHING: Folded = (0.0, 0.0, 0.0)
-"""No terms."""
+"""The sum of no terms."""
 
 UNFOLDED = (0.0, 0.0)
 """Folds that leave the terms as they are, for a first pass that finds the largest one."""
@@ -50,7 +50,7 @@ def add(total: Folded, term: float, coarse: float, fine: float) -> Folded:
 
 @numba.njit(**{**options, "fastmath": {"reassoc"}})
 def _sum_of_parts(parts: Array, count: int) -> float:
-    """Sum of the first `count` of `parts`, multiples of one quantum, by as many lanes as the processor has."""
+    """Sum of the first `count` of `parts`, multiples of one quantum, in as many lanes as the processor has."""
     total = 0.0
     for i in range(count):
         total += parts[i]
@@ -59,7 +59,7 @@ def _sum_of_parts(parts: Array, count: int) -> float:
 
 @numba.njit(**options)
 def add_all(total: Array, terms: Array, count: int, coarse: float, fine: float, spare: Array) -> None:
-    """Add the first `count` of `terms` to coarse and fine sums, `total[0]` and `total[1]`; see `add`.
+    """Add the first `count` of `terms` to the coarse and fine sums, `total[0]` and `total[1]`; see `add`.
 
     The terms are overwritten, and so is `spare`, of the same size.
     """
@@ -72,9 +72,9 @@ def add_all(total: Array, terms: Array, count: int, coarse: float, fine: float, 
 
 
 def folds(bound: float, count: int) -> tuple[float, float]:
-    """The numbers by which up to `count` terms, whose magnitudes add to no more than `bound`, are folded."""
+    """The numbers that fold up to `count` terms whose magnitudes add up to no more than `bound`."""
     if not 0.0 < bound < math.inf:
-        return UNFOLDED  # no terms but zeros, or some that have no sum
+        return UNFOLDED  # all terms are zero, or they have no finite sum
     coarse = math.frexp(bound)[1] + 1
     fine = coarse - DIGITS + math.frexp(count)[1] + 1
     try:
@@ -86,10 +86,10 @@ def folds(bound: float, count: int) -> tuple[float, float]:
 def folded_sums(
     kernel: Callable[[Array, Array, Array], None], sums: int, count: int, processes: Processes
 ) -> list[float]:
-    """The `sums` that a kernel adds up, free of their order; `count` is that of the terms of all processes at most.
+    """The `sums` that a kernel adds up, whatever the order; `count` bounds the number of terms of all processes.
 
-    `kernel(coarse, fine, parts)` writes what `add` gives into `parts` (BLOCKS, sums, 3), with the folds (sums,) of each
-    sum. It is called twice, the first time for the largest terms, which bound the sums.
+    `kernel(coarse, fine, parts)` writes the results of `add` into `parts` (BLOCKS, sums, 3), with the folds (sums,) of
+    each sum. It is called twice, first to find the largest terms, which bound the sums.
     """
     parts = np.empty((BLOCKS, sums, 3))
     kernel(np.zeros(sums), np.zeros(sums), parts)
@@ -99,7 +99,7 @@ def folded_sums(
 
 
 def bounded_sums(kernel: Callable[[Array, Array, Array], None], numbers: Array, processes: Processes) -> list[float]:
-    """The same in one pass, with `folds` (sums, 2) that are known."""
+    """The same in one pass, where the `folds` (sums, 2) are already known."""
     parts = np.empty((BLOCKS, len(numbers), 3))
     kernel(numbers[:, 0].copy(), numbers[:, 1].copy(), parts)
     return [coarse + fine for coarse, fine in processes.sums(parts[:, :, :2].sum(axis=0)).tolist()]

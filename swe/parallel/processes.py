@@ -1,7 +1,7 @@
-"""What a model asks of the other processes that hold the rest of its mesh: sums, extremes and values from next door.
+"""What a model needs from the processes that hold the rest of its mesh: sums, extremes and neighbouring values.
 
-The only implementation today is that of a process which holds all of the mesh. All results are the same however the
-entities are divided among processes, and in whatever order they stand.
+The only implementation today is for one process that holds the whole mesh. Results depend neither on how the entities
+are divided among processes nor on their order.
 """
 
 from typing import Protocol
@@ -25,7 +25,7 @@ class Processes(Protocol):
         """Sums over all processes of `values` that add without rounding (`swe.parallel.folding`)."""
 
     def largest(self, values: Array) -> Array:
-        """Largest of each of `values` over all processes; not a number where any is not."""
+        """Largest of each of `values` over all processes; NaN if any is NaN."""
 
     def exchange(self, state: State) -> None:
         """Write into `state` the values that other processes have computed at entities which this one only reads."""

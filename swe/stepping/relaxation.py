@@ -1,7 +1,7 @@
 """Relaxation of a Runge-Kutta step: its increment is scaled so that total energy stays exactly what it was.
 
 Ketcheson (2019), Relaxation Runge-Kutta methods. Along an increment (p, v) of thickness and velocity the total energy
-of the scheme is a cubic in the factor, without a constant term once the energy at the start is taken away:
+of the scheme is a cubic in the factor, without a constant term once the energy at the start is subtracted:
 
     E(h + c p, u + c v) - E(h, u) = c (e_1 + c e_2 + c^2 e_3)
 
@@ -18,27 +18,27 @@ from swe.parallel.folding import bounded_sums, folds
 from swe.state import State
 
 EXCESS = 8.0
-"""Times the energy of the start that the terms of its change in a step may add up to, none seen near it."""
+"""The terms of the energy change in a step may add up to this many times the initial energy; none came near it."""
 
 NEWTON_STEPS = 4
-"""Of the quadratic, whose root differs from 1 by some 1e-3 at the default time step, and by less at shorter ones."""
+"""Newton steps for the quadratic, whose root is some 1e-3 from 1 at the default time step, closer at shorter ones."""
 
 FARTHEST = 0.1
-"""A root farther from 1 is that of round-off, where the flow is at rest or steady; the step is then left as it is."""
+"""A root farther from 1 is an artefact of round-off in a flow at rest or steady; the step is then left unscaled."""
 
 
 class Relaxation:
-    """Finds factors that keep the energy of `model`, a flow over topography whose wind is not prescribed."""
+    """Finds the factors that conserve the energy of `model`, a flow over topography whose wind is not prescribed."""
 
     def __init__(self, model: ShallowWaterModel, state: State) -> None:
         self._model = model
-        # Mass is conserved, so heights may count from any level; from the mean one their products are small.
+        # Mass is conserved, so heights may be measured from any level; from the mean level their products are small.
         self._height = model.topography - mean_level(model, state)
         self._half = 0.5 * model.mesh.dv_edge * model.mesh.dc_edge
         self._folds = np.array([folds(EXCESS * self._energy(state), model.entities)] * 3)
 
     def _energy(self, state: State) -> float:
-        """An energy, m5/s2, of the size of all that moves: kinetic, and potential without regard to signs."""
+        """A scale of energy, m5/s2: kinetic energy, plus potential energy with all terms taken as positive."""
         model, h = self._model, state.thickness
         terms = np.empty((2, h.size))
         terms[0] = model.mesh.area_cell * h * model.diagnose(state).kinetic_energy
@@ -46,7 +46,7 @@ class Relaxation:
         return sum(model.processes.exact_sums(terms))
 
     def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
-        """e_1, e_2 and e_3 of the change of energy along the increment from `state` to `after`, m5/s2."""
+        """e_1, e_2 and e_3 of the energy change along the increment from `state` to `after`, m5/s2."""
         model, mesh = self._model, self._model.closed
 
         def along(coarse: Array, fine: Array, parts: Array) -> None:
@@ -69,9 +69,9 @@ class Relaxation:
         return first, second, third
 
     def factor(self, state: State, after: State) -> float:
-        """The factor of the increment from `state` to `after` with which the energy stays that of `state`."""
+        """The factor that scales the increment from `state` to `after` so that the energy stays that of `state`."""
         first, second, third = self.coefficients(state, after)
-        off = 0.0  # the factor less one
+        off = 0.0  # the factor minus one
         for _ in range(NEWTON_STEPS):
             slope = second + 2.0 * third * (1.0 + off)
             if slope == 0.0:

@@ -6,17 +6,17 @@ from dataclasses import dataclass
 import numpy as np
 
 ROUNDING = 1e-9
-"""A step that would stop short of an event by less than this part of itself lands on the event."""
+"""A step that would stop short of an event by less than this fraction of its length lands on the event."""
 
 EXCESS = 0.01
-"""Part of a step by which the steps before an event may be longer together than asked for."""
+"""Fraction of a step by which the steps before an event may together exceed the length asked for."""
 
 
 @dataclass(frozen=True)
 class Schedule:
     """Whole multiples of `interval` seconds up to and including `end` seconds, which is always an event.
 
-    A multiple that differs from the end by round-off is the end.
+    A multiple that differs from the end by round-off counts as the end.
     """
 
     interval: float
@@ -33,7 +33,7 @@ class Schedule:
         return self.end if event > self.end - ROUNDING * self.interval else event
 
     def last_before_end(self) -> float:
-        """The last event before the end, seconds; 0 where there is none."""
+        """The last event before the end, seconds; 0 if there is none."""
         count = np.floor(self.end / self.interval)
         while count > 0.0 and count * self.interval > self.end - ROUNDING * self.interval:
             count -= 1.0
@@ -49,10 +49,10 @@ class Schedule:
 
 
 def last_shared(schedules: Sequence[Schedule]) -> float:
-    """The last time, seconds, at which a run with these schedules has done what any longer one has done by then.
+    """The last time, seconds, up to which a run with these schedules does the same as any longer run.
 
-    That is its end where all of them have an event there by themselves. Else it is the last event before: after it
-    comes a step that is shortened to land on the end, or a record that a longer run has not.
+    That is its end if the end is a multiple of every interval. Otherwise it is the last event before: after that comes
+    a step shortened to land on the end, or a record that a longer run does not write.
     """
     if all(schedule.ends_on_multiple() for schedule in schedules):
         return schedules[0].end
@@ -68,7 +68,7 @@ def step_towards(time: float, event: float, time_step: float) -> tuple[float, fl
 
 
 def steps_towards(time: float, event: float, time_step: float, most: int) -> tuple[float, list[float]]:
-    """Length of the next steps and the times after each: as many of one length as there are, up to `most`."""
+    """Length of the next steps and the time after each: as many steps of equal length as there are, up to `most`."""
     step, following = step_towards(time, event, time_step)
     times = [following]
     while len(times) < most and times[-1] < event:
@@ -80,7 +80,7 @@ def steps_towards(time: float, event: float, time_step: float, most: int) -> tup
 
 
 def equal_step(time: float, event: float, time_step: float) -> float:
-    """Length of the steps that divide what is left to `event`, about `time_step` and at most a hundredth more."""
+    """Length of the equal steps that divide the time left to `event`: about `time_step`, at most a hundredth more."""
     remaining = event - time
     return float(remaining / max(1.0, np.ceil(remaining / time_step - EXCESS)))
 

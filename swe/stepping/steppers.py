@@ -1,4 +1,4 @@
-"""From one output time to the next: steps of one length, or scaled by relaxation, and terms that act after steps."""
+"""From one output time to the next: steps of equal length, or scaled by relaxation, and terms that act after steps."""
 
 from collections.abc import Sequence
 from typing import Protocol
@@ -10,10 +10,10 @@ from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import equal_step, steps_towards
 
 LANDINGS = 5
-"""Attempts at a step whose scaled length ends at an output time; two do, but where round-off blurs the factor."""
+"""Attempts at a step whose scaled length ends at an output time; two suffice unless round-off blurs the factor."""
 
 LANDED = 1e-10
-"""Part of a step by which the last one may miss the output time that the clock shows."""
+"""Fraction of a step by which the last one may miss the output time that the clock shows."""
 
 
 class Method(Protocol):
@@ -21,35 +21,35 @@ class Method(Protocol):
 
     @property
     def unsound(self) -> int:
-        """Number of values that are not sound after the last step."""
+        """Number of non-finite values and non-positive thicknesses after the last step."""
 
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
-        """Take up to `steps` steps in place from `time`, s, fewer where one left unsound values; give their number."""
+        """Take up to `steps` steps in place from `time`, s, fewer if one leaves `unsound` values; return how many."""
 
 
 class Stepper(Protocol):
-    """Takes a state through time."""
+    """Advances a state in time."""
 
     @property
     def unsound(self) -> int:
-        """Number of values that are not sound after the last step."""
+        """Number of non-finite values and non-positive thicknesses after the last step."""
 
     def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
-        """Take up to `most` steps of about `time_step` seconds from `time` towards `event`, which none passes.
+        """Take up to `most` steps of about `time_step` seconds from `time` towards `event`, without passing it.
 
-        Gives the time after them and their number.
+        Returns the time after them and their number.
         """
 
 
 class FixedSteps:
-    """Steps of one length, but for the last before an event, which may be shorter."""
+    """Steps of equal length, except the last before an event, which may be shorter."""
 
     def __init__(self, method: Method) -> None:
         self._method = method
 
     @property
     def unsound(self) -> int:
-        """Number of values that are not sound after the last step."""
+        """Number of non-finite values and non-positive thicknesses after the last step."""
         return self._method.unsound
 
     def advance(self, state: State, time: float, event: float, time_step: float, most: int) -> tuple[float, int]:
@@ -60,7 +60,7 @@ class FixedSteps:
 
 
 class SplitMethod:
-    """A method with `terms` after each of its steps."""
+    """A method whose every step is followed by `terms`."""
 
     def __init__(self, method: Method, terms: Sequence[Term]) -> None:
         self._method = method
@@ -80,9 +80,9 @@ class SplitMethod:
 
 
 class RelaxedSteps:
-    """Steps whose increments are scaled so that they keep total energy, and the clock with them.
+    """Steps whose increments are scaled to conserve total energy, and the clock with them.
 
-    What is left to an event is divided into equal steps, anew after each. The `terms` act after each step.
+    The time left to an event is divided into equal steps, afresh after each. The `terms` act after each step.
     """
 
     def __init__(self, method: Method, relaxation: Relaxation, state: State, terms: Sequence[Term] = ()) -> None:
@@ -101,7 +101,7 @@ class RelaxedSteps:
         return time, taken
 
     def _step(self, state: State, time: float, event: float, time_step: float) -> float:
-        """One step; gives the time after it."""
+        """Take one step; return the time after it."""
         step = equal_step(time, event, time_step)
         factor = self._try(state, step, time)
         following = time + factor * step
@@ -117,14 +117,14 @@ class RelaxedSteps:
         return following
 
     def _try(self, state: State, step: float, time: float) -> float:
-        """Find the state after `step` seconds from `time`; give the factor of the increment that leads there."""
+        """Find the state after `step` seconds from `time`; return the factor that scales its increment."""
         self._after.thickness[:] = state.thickness
         self._after.normal_velocity[:] = state.normal_velocity
         self._method.advance(self._after, step, 1, time)
         return self._relaxation.factor(state, self._after)
 
     def _land(self, state: State, factor: float, remaining: float, time: float) -> tuple[float, float]:
-        """Find the step whose scaled length is `remaining` seconds by secants; gives its factor and length."""
+        """Find, by the secant method, the step of scaled length `remaining` seconds; return its factor and length."""
         step, excess = remaining, factor * remaining - remaining
         following = remaining / factor
         for _ in range(LANDINGS):

@@ -8,19 +8,19 @@ from swe.parallel.processes import ONE_PROCESS
 from swe.state import State
 
 Tendency = Callable[[State, State, float], None]
-"""Writes the time derivative of its first argument at a time, s, its third, into its second."""
+"""Writes the time derivative of its first argument into its second; the third is the time, s."""
 
 
 @dataclass(frozen=True)
 class ButcherTableau:
-    """An explicit method: `stages[i]` weighs the earlier slopes in stage i, `weights` all of them at the end."""
+    """An explicit method: `stages[i]` weights the earlier slopes in stage i, `weights` all slopes at the end."""
 
     stages: tuple[tuple[float, ...], ...]
     weights: tuple[float, ...]
 
     @property
     def nodes(self) -> tuple[float, ...]:
-        """Times of the stages, in parts of a step."""
+        """Times of the stages, as fractions of a step."""
         return tuple(sum(coefficients) for coefficients in self.stages)
 
 
@@ -28,14 +28,14 @@ RK4 = ButcherTableau(
     stages=((), (1 / 2,), (0.0, 1 / 2), (0.0, 0.0, 1.0)),
     weights=(1 / 6, 1 / 3, 1 / 3, 1 / 6),
 )
-"""The classical method of order four."""
+"""The classical fourth-order method."""
 
 
 class RungeKutta:
     """Advances a state in place with an explicit method; the slopes are allocated once.
 
-    `exchange` lets the values of other processes arrive in a state before its slope is taken.
-    `unsound` is the number of thicknesses that are not positive and of values that are not finite after `advance`.
+    `exchange` fetches the values of other processes into a state before its slope is taken.
+    `unsound` is the number of non-finite values and non-positive thicknesses after `advance`.
     """
 
     def __init__(
@@ -53,7 +53,7 @@ class RungeKutta:
         self._slopes = [state.empty_like() for _ in tableau.weights]
 
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
-        """Take up to `steps` steps from `time`, s, fewer where one leaves `unsound` values; give their number."""
+        """Take up to `steps` steps from `time`, s, fewer if one leaves `unsound` values; return their number."""
         for taken in range(1, steps + 1):
             self.step(state, time_step, time + (taken - 1) * time_step)
             self.unsound = count_unsound(state.thickness, state.normal_velocity)
@@ -73,7 +73,7 @@ class RungeKutta:
         self.exchange(state)
 
     def _combine(self, state: State, time_step: float, coefficients: tuple[float, ...], result: State) -> State:
-        """Write state + dt sum_i c_i k_i into `result`; give `state` itself where all c_i vanish."""
+        """Write state + dt sum_i c_i k_i into `result`; return `state` itself if all c_i vanish."""
         base = state
         for coefficient, slope in zip(coefficients, self._slopes, strict=False):
             if coefficient == 0.0:

@@ -1,14 +1,17 @@
 """The mesh cut into tiles of neighbouring cells, each with all that its tendency needs, in local numbers.
 
-A tile owns a run of cells and the edges whose lower cell is among them. To find the tendency at those it computes
+A tile owns a run of cells and the edges whose lower cell is among them. To find their tendency it computes
 
-- the contributions to its edges of every cell at their two ends: its own cells and a rim of cells after them;
-- the potential vorticity at all vertices of these cells;
-- from the thickness of the cells round those vertices and the velocity at the edges round them, the halo.
+- the contributions to its edges from the cells at both ends of each: its own cells and a rim of cells after them;
+- the potential vorticity at all vertices of these cells.
 
-Everything a tile reads lies together, in the order in which it is read. Rings of cells are stored side by side of the
-ring (all first sides, all second sides, ...), so that neighbouring cells fill the lanes of a vector; cells with fewer
-than `RING` sides are filled up with sides of no length, those with more have their rings apart, after the others.
+For these it needs the thickness of the cells around those vertices and the velocity at the edges around them. Those
+that it does not own are its halo.
+
+Everything a tile reads is stored contiguously, in the order in which it is read. The rings of sides of the cells are
+stored side by side (all first sides, all second sides, ...), so that neighbouring cells fill the lanes of a vector.
+Cells with fewer than `RING` sides are padded with sides of no length; those with more have their rings stored
+separately, after the others.
 """
 
 from dataclasses import dataclass
@@ -25,21 +28,21 @@ from swe.errors import InputError
 from swe.tiles.tile_kernels import MIRROR, RING, TileArrays
 
 CELLS_PER_TILE = 2560
-"""Half a megabyte of scratch stays in the second cache, and a tile repeats a tenth of its neighbours' work."""
+"""Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
 
 DISORDER = 1.5
-"""A mesh keeps its own numbering unless it parts this many times more neighbours between tiles than a curve does."""
+"""A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
 
 
 @dataclass(frozen=True, eq=False)
 class Tiles:
     """Tiles of a mesh; `arrays` is what the kernels take.
 
-    `cell_order` and `edge_order` are the cells and edges of the mesh in the order of the tiles, None where that is the
-    order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are the tiles' places in it. `halo` holds the places
-    of the cells and the edges that a tile reads from others; `indices` and `metrics` the tile's local indices and its
-    geometry with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) are the places where the parts
-    begin, and where the last one ends; `_Cutter.cut` gives their order. `most` are the largest numbers of entities.
+    `cell_order` and `edge_order` are the cells and edges of the mesh in the order of the tiles, or None if that is the
+    order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are where each tile starts in it. `halo` holds the
+    places of the cells and edges that a tile reads from others; `indices` and `metrics` hold the tile's local indices
+    and its geometry, with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) say where each part
+    begins, and where the last one ends; `_Cutter.cut` defines their order. `most` holds the largest sizes of any tile.
     """
 
     cell_order: Index | None
@@ -89,11 +92,11 @@ class LocalSizes:
 def build_tiles(
     mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cells_per_tile: int = CELLS_PER_TILE
 ) -> Tiles:
-    """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer where scratch would not hold them.
+    """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
     Where neighbours are missing, a tile reads an edge of no length, kites of no area and a wall's own cell twice.
-    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `InputError` where the
-    surroundings of a single cell do not fit.
+    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `InputError` if not
+    even the surroundings of a single cell fit.
     """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
@@ -136,7 +139,7 @@ def build_tiles(
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """The arrays of one tile, in the order in which the kernels take them apart; `sizes` are those of `LocalSizes`."""
+    """The arrays of one tile, in the order in which the kernels unpack them; `sizes` are those of `LocalSizes`."""
 
     halo: list[Index]
     indices: list[Index]
@@ -145,7 +148,7 @@ class _Piece:
 
 
 class _Cutter:
-    """Cuts tiles out of a mesh, one after the other."""
+    """Cuts tiles out of a mesh, one after another."""
 
     def __init__(
         self,
@@ -231,14 +234,14 @@ class _Cutter:
         return piece
 
     def _slot(self, edges: Index, end: int, slots: Index) -> Index:
-        """Where the cell at `end` of each edge leaves its contribution."""
+        """Slot into which the cell at `end` of each edge writes its contribution."""
         cell = self.mesh.cells_on_edge[edges, end]
         side = np.argmax(self.mesh.edges_on_cell[cell] == edges[:, None], axis=1)
         return slots[self.local_cells.of(cell), side]
 
 
 class _LocalNumbers:
-    """Numbers within a tile of the entities of one kind, given in the order in which they come up."""
+    """Local numbers, within a tile, of entities of one kind, in the order in which they first appear."""
 
     def __init__(self, size: int) -> None:
         self._number = np.full(size, -1)
@@ -254,22 +257,22 @@ class _LocalNumbers:
         self._count += len(fresh)
 
     def known(self) -> Index:
-        """The entities by their numbers."""
+        """The entities in the order of their local numbers."""
         return np.concatenate(self._entities)
 
     def of(self, entities: Index) -> Index:
-        """Numbers of `entities`; anything where they have none."""
+        """Local numbers of `entities`; undefined for those that have none."""
         return self._number[entities]
 
     def forget(self) -> None:
-        """Start anew."""
+        """Forget all numbers, to start on another tile."""
         for entities in self._entities:
             self._number[entities] = -1
         self._entities, self._count = [], 0
 
 
 def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
-    """The mesh's own order where it keeps neighbours together, else that along a curve."""
+    """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
     own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
     tile = np.searchsorted(first_cell, own, side="right")
 
@@ -285,7 +288,7 @@ def _is_identity(order: Index) -> bool:
 
 
 def _area_passed(mesh: VoronoiMesh) -> Array:
-    """Fraction (n_cells, max_edges) of the cell's area in its kites from side 0 on before each side."""
+    """Fraction (n_cells, max_edges) of the cell's area in its kites between side 0 and each side."""
     passed = np.zeros((mesh.n_cells, mesh.max_edges))
     cell = np.arange(mesh.n_cells)[:, None]
     for side in range(1, mesh.max_edges):

@@ -1,4 +1,4 @@
-"""The fast path: classical RK4 whose stages are one pass over the tiles of the mesh each."""
+"""The fast path: classical RK4, each stage of which is one pass over the tiles of the mesh."""
 
 import numba
 import numpy as np
@@ -14,7 +14,7 @@ from swe.tiles.cutting import Tiles, build_tiles
 
 
 def why_not_fused(model: ShallowWaterModel) -> str | None:
-    """What of a model the loops over tiles do not compute, as a part of a sentence; None where they compute it all."""
+    """What the loops over tiles do not compute of a model, as part of a sentence; None if they compute all of it."""
     names = [term.name for term in model.terms_in_stages]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
@@ -22,11 +22,11 @@ def why_not_fused(model: ShallowWaterModel) -> str | None:
 
 
 class FusedRungeKutta:
-    """Advances a state by classical RK4; computes what `RungeKutta(model.tendency, state)` does, to round-off.
+    """Advances a state by classical RK4, with the same result as `RungeKutta(model.tendency, state)` to round-off.
 
-    The weights of the Coriolis flux are those of the kite areas, which `weights_on_edge` of files from other programs
-    equal up to their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError`
-    where the loops over tiles do not compute all of the model (`why_not_fused`).
+    The weights of the Coriolis flux follow from the kite areas; `weights_on_edge` in files from other programs equal
+    them up to their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError`
+    if the loops over tiles do not compute all of the model (`why_not_fused`).
     """
 
     def __init__(self, model: ShallowWaterModel) -> None:
@@ -42,24 +42,24 @@ class FusedRungeKutta:
 
     @property
     def unsound(self) -> int:
-        """Number of thicknesses that are not positive and of values that are not finite after the last step."""
+        """Number of non-finite values and non-positive thicknesses after the last step."""
         return int(self._unsound.sum())
 
     @property
     def bytes_per_step(self) -> int:
-        """What a step must move, every array counted once for each stage that reads or writes it.
+        """Bytes that a step must move, with every array counted once for each stage that reads or writes it.
 
-        The tiles are read in all four stages. A stage needs 2, 3, 3 and 4 states: that at which it takes its slope,
-        after the first also that at the start, and that which it writes; the last writes over the one at the start.
+        The tiles are read in all four stages. The stages need 2, 3, 3 and 4 states: the one at which the slope is
+        taken, after the first stage also the initial one, and the one written; the last overwrites the initial one.
         """
         tiles = sum(array.nbytes for array in self.tiles.arrays)
         state = sum(array.nbytes for array in self._stages[0])
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
-        """Advance `state` in place by `steps` steps of `time_step` seconds, fewer where one left `unsound` values.
+        """Advance `state` in place by `steps` steps of `time_step` seconds, fewer if one leaves `unsound` values.
 
-        Gives the number of steps taken. Nothing depends on the `time`.
+        Returns the number of steps taken. Nothing depends on `time`.
         """
         y = self._in_order(state)
         steps_taken = self._steps if self.model.processes.alone else self._steps_with_exchange
@@ -76,7 +76,7 @@ class FusedRungeKutta:
         return taken
 
     def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        """The stages of `rk4_steps`, with the values of other processes arriving after each."""
+        """The stages of `rk4_steps`, with an exchange of values between processes after each."""
         model, (second, third, fourth) = self.model, self._stages
         fixed = (self.tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, y)
         for taken in range(1, steps + 1):
@@ -88,7 +88,7 @@ class FusedRungeKutta:
         return steps
 
     def _exchange(self, pair: tuple[Array, Array]) -> None:
-        """Let the values of other processes arrive in a pair of thickness and velocity in the order of the tiles."""
+        """Fetch the values of other processes into a pair of thickness and velocity in the order of the tiles."""
         orders = (self.tiles.cell_order, self.tiles.edge_order)
         state = State(
             *(_in_order(v, None if o is None else inverse_order(o)) for v, o in zip(pair, orders, strict=True))
@@ -99,7 +99,7 @@ class FusedRungeKutta:
                 values[:] = _in_order(arrived, order)
 
     def tendency(self, state: State, result: State, time: float = 0.0) -> None:
-        """Write the time derivative of `state` into `result`, as the stages of a step take it at any `time`."""
+        """Write the time derivative of `state` into `result`, as the stages of a step use it at any `time`."""
         tiles, model = self.tiles, self.model
         in_order = tiles.cell_order is None and tiles.edge_order is None
         slope = (result.thickness, result.normal_velocity) if in_order else self._stages[0]
@@ -129,10 +129,10 @@ def _in_order(values: Array, order: Index | None) -> Array:
 
 
 def _scratch(tiles: Tiles) -> tuple[Array, ...]:
-    """A row for every thread there may be, of the size of the largest tile; untouched rows take no memory.
+    """One row per possible thread, sized for the largest tile; untouched rows take no memory.
 
-    In the order of the kernels: thickness, circulation and its mirror, potential vorticity, contributions to edges, and
-    the tendencies of both.
+    In the order that the kernels expect: thickness, circulation and its mirror, potential vorticity, contributions to
+    edges, and the tendencies of thickness and velocity.
     """
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     sizes = (

@@ -1,17 +1,17 @@
 """Compiled loops over tiles: one stage of the Runge-Kutta method in one pass over the mesh.
 
 A tile computes the tendency of its own cells and edges from local copies of the state, with local indices, and
-repeats what it needs from its neighbours (`swe.tiles.cutting` says what that is and how it is laid out). So q and the
-contributions of cells to edges never leave the cache, tiles of one stage are independent, and which thread takes
-which tile changes nothing.
+repeats the part of its neighbours' work that it needs (`swe.tiles.cutting` says which, and how it is laid out). So q
+and the contributions of cells to edges never leave the cache, the tiles of one stage are independent, and results do
+not depend on which thread takes which tile.
 
 The equations are those of `swe.equations.tendency`, with three changes of form. Edges carry the circulation U_e = d_e
-u_e, with -U_e mirrored `MIRROR` places on, so that an index picks the sign too. The Coriolis flux is summed by cells in
-its prefix form, O(n) for n sides. Each cell adds its Bernoulli function to what it gives its edges, since
+u_e, with -U_e mirrored `MIRROR` places on, so that an index picks the sign too. The Coriolis flux is summed cell by
+cell in its prefix form, O(n) for n sides. Each cell adds its Bernoulli function to its contribution to the edges, since
 d_e du_e/dt = (Q + B) of the first cell - (Q + B) of the second.
 
-Indices are unsigned, as signed ones are tested for wrap-around, and slices are taken in functions that the parallel
-loop calls, as the compiler is told that arrays do not overlap only where the loop itself makes no views.
+Indices are unsigned, because signed ones are tested for wrap-around. Slices are taken in functions that the parallel
+loop calls, because the compiler learns that arrays do not overlap only if the loop itself makes no views.
 """
 
 from contextlib import suppress
@@ -25,10 +25,10 @@ from numba.extending import intrinsic
 from mesh.arrays import Array, Index
 
 MIRROR = 12300
-"""Distance of -U from U in scratch, and so the most edges of a tile; whole pages would share sets of the cache."""
+"""Distance of -U from U in scratch, so also the most edges in a tile; whole pages would share sets of the cache."""
 
 RING = 6
-"""Sides that the vectorised loop over cells computes; the few cells with more are done again apart."""
+"""Sides that the vectorised loop over cells computes; the few cells with more are computed again separately."""
 
 options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 TileArrays = tuple[Index, Index, Index, Index, Index, Index, Array, Index]
@@ -43,7 +43,7 @@ compiled = numba.njit(parallel=True, cache=True, **options)
 
 @inlined
 def _load_cells(h: Array, first: int, owned: int, halo: Index, local: Array) -> None:
-    """Thickness of the tile's own cells and of those round them."""
+    """Thickness of the tile's own cells and of those in its halo."""
     for i in range(owned):
         local[i] = h[first + i]
     for i in range(halo.size):
@@ -102,7 +102,7 @@ def _one_cell(
 
         Q_j = 1/2 sum_k (q_j + q_k) G_k (1/2 + P_j - P_k - [k < j] - [k = j]/2).
 
-    Sums without the factors 1/2 of h_e and q_j are multiplied by them at the end.
+    The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
     """
     outflow = outflow_P = qG = qG_P = energy = 0.0
     last = q[vertices[start + (sides - 1) * stride]]
@@ -239,7 +239,7 @@ def _add_weighted_slopes(
 ) -> None:
     """Add dt (k_1 + 2 k_2 + 2 k_3 + k_4)/6 to y in place, where dt k_1 = 2 (second - y), ..., dt k_3 = fourth - y.
 
-    So the states of the stages stand for their slopes, which need not be kept.
+    The states of the stages thus stand in for their slopes, which need not be kept.
     """
     for i in range(last - first):
         start = y[first + i]
@@ -249,7 +249,7 @@ def _add_weighted_slopes(
 
 @inlined
 def _count_unsound(first: int, last: int, values: Array, least: float) -> int:
-    """Number of values that are not above `least` or not finite."""
+    """Number of values that are not finite or not above `least`."""
     count = 0
     for i in range(first, last):
         if not (least < values[i] < np.inf):
@@ -289,11 +289,11 @@ def _stage_of_tile(
 
 @intrinsic
 def _prefer_widest_vectors(_typing_context: Any) -> Any:
-    """Let the loop that calls this use vectors of 512 bits where the processor has them.
+    """Let the loop that calls this use vectors of 512 bits if the processor has them.
 
-    The compiler prefers 256 bits even there, to spare the clock of older processors, and is a seventh slower.
-    The attribute is not among those that llvmlite knows by name, so it is added to the set beneath; where that ceases
-    to work, the loop is as fast as without.
+    Even then the compiler prefers 256 bits, to spare the clock of older processors, and the loop is a seventh slower.
+    llvmlite does not know the attribute by name, so it is added to the underlying set. If that ceases to work, the loop
+    is as fast as without it.
     """
 
     def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
@@ -305,7 +305,7 @@ def _prefer_widest_vectors(_typing_context: Any) -> Any:
 
 
 def _nothing() -> None:
-    """What takes its place where loops are run as Python."""
+    """The substitute when the loops run as Python."""
 
 
 use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_vectors  # type: ignore[attr-defined]
@@ -329,7 +329,7 @@ def stage(
     """One stage of a step from y, with the slope k at the state `at`.
 
     A stage before the last writes y + weight dt k into `result`; the last one, of weight 0, replaces y by the state
-    after the step, leaves `result` alone and counts unsound values.
+    after the step, leaves `result` alone and counts non-finite values and non-positive thicknesses.
     """
     for tile in numba.prange(unsound.size):
         use_widest_vectors()  # type: ignore[call-arg]
@@ -355,7 +355,7 @@ def stage(
 def tendency(
     tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, at: Arrays, slope: Arrays, unsound: Index
 ) -> None:
-    """Write the slope at the state `at` into `slope`, which is zero, both in the order of the tiles."""
+    """Write the slope at the state `at` into `slope`, zero beforehand, both in the order of the tiles."""
     stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
 
 
@@ -375,10 +375,9 @@ def rk4_steps(
 ) -> int:
     """Advance y, a pair of thickness and normal velocity in the order of the tiles, by steps of classical RK4.
 
-    Gives the number of steps taken: `count`, or less where a step left unsound values, thicknesses that are not
-    positive or values that are not finite, of which `unsound` (n_tiles,) has the numbers. `second`, `third` and
-    `fourth` are left with the states at which the stages after the first took their slopes. Where not `moving`, the
-    velocity stays as it is.
+    Returns the number of steps taken: `count`, or fewer if a step left non-finite values or non-positive thicknesses,
+    counted for each tile in `unsound` (n_tiles,). `second`, `third` and `fourth` are left with the states at which the
+    stages after the first took their slopes. If not `moving`, the velocity stays fixed.
     """
     dt = time_step
     for taken in range(1, count + 1):
