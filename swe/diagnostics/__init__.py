@@ -1,1 +1,1 @@
-"""What is measured of a state: invariants, and the part that each term has in their changes."""
+"""What is measured of a state: invariants, and how much each term changes them."""

@@ -2,9 +2,10 @@
 
 With F_e = h_e u_e and the Bernoulli function B_i = g (h_i + b_i) + K_i, an acceleration a_e of the fluid changes total
 energy by the sum of l_e d_e F_e a_e, absolute vorticity by that of the circulations C_v = sum_e t_ev d_e a_e and
-potential enstrophy by that of q_v C_v; a tendency of thickness changes them by A_i B_i dh_i and -q_v^2/2 kite_vi dh_i.
-Thuburn et al. (2009) and Ringler et al. (2010) show which of the terms cancel: the work of the Coriolis force, and that
-of minus the gradient of B against the transport of B by the mass flux. They do so to round-off.
+potential enstrophy by that of q_v C_v; a thickness tendency dh_i changes total energy by the sum of A_i B_i dh_i and
+potential enstrophy by that of -q_v^2/2 kite_vi dh_i. Thuburn et al. (2009) and Ringler et al. (2010) show which of the
+terms cancel: the work of the Coriolis force cancels, and that of minus the gradient of B cancels the transport of B by
+the mass flux. They do so to round-off.
 """
 
 from collections.abc import Iterable, Mapping
@@ -25,7 +26,7 @@ RATES = {
     "potential_enstrophy": ("m s-3", ("coriolis", "anticipation", "dissipation")),
     "absolute_vorticity": ("m2 s-2", ("coriolis", "gradient", "dissipation")),
 }
-"""For each integral the units of its rates and what changes it, besides the time step and terms of the user's."""
+"""For each integral the units of its rates and what changes it, besides the time step and the user's own terms."""
 
 MEANINGS = {
     "transport": "by the divergence of the mass flux, zero but for round-off",
@@ -35,7 +36,7 @@ MEANINGS = {
     "dissipation": "by biharmonic dissipation",
     "time": "since the row before, on the average, less the terms' mean of both rows: by the time step",
 }
-"""What a term is, apart from the Coriolis force, whose effect on potential enstrophy does not vanish."""
+"""What each cause is, except the Coriolis force, whose effect on potential enstrophy does not vanish."""
 
 CORIOLIS = {
     "total_energy": "by the work of the Coriolis force, zero but for round-off",
@@ -50,7 +51,7 @@ def rate_name(integral: str, term: str) -> str:
 
 
 def rate_series(terms: Iterable[Term] = ()) -> dict[str, tuple[str, str]]:
-    """Units and meaning of every rate by its name, of a model with these `terms`."""
+    """Units and meaning of every rate, by name, for a model with these `terms`."""
     terms = tuple(terms)
     own = {term.name: term.meaning for term in terms}
     return {
@@ -78,8 +79,8 @@ def measure_rates(
 ) -> dict[str, float]:
     """Rates of the integrals at `state` and `time`, s, under the names of the diagnostics file.
 
-    `diagnosis` belongs to `state`, and `tendency` is what the run takes its steps with, without terms that act after
-    steps. Under a prescribed wind no force acts, and all is zero but the transport of mass and what terms do.
+    `diagnosis` belongs to `state`, and `tendency` is the one with which the run takes its steps, without terms that act
+    after steps. Under a prescribed wind no force acts, and only the transport of mass and the terms have rates.
     """
     rates = dict.fromkeys((name for name in rate_series(model.terms) if not name.endswith("_time")), 0.0)
     bernoulli, q = np.empty(model.mesh.n_cells), diagnosis.potential_vorticity
@@ -101,7 +102,7 @@ def measure_rates(
             source, force = getattr(by_source, integral), getattr(by_force, integral)
             rates[rate_name(integral, term.name)] = source + force
             if not term.after_steps and (integral == "mass" or not model.prescribed_wind):
-                # What the tendency has of the term was taken for transport and Coriolis force above.
+                # The term's part in the tendency was taken for transport and Coriolis force above.
                 _take(rates, integral, "source", source)
                 _take(rates, integral, "force", force)
     return rates
@@ -119,11 +120,11 @@ _TAKEN_FOR = {
         "absolute_vorticity": "coriolis",
     },
 }
-"""Under which cause the part of a term in a tendency is found that is not told apart."""
+"""The cause for which the part of a term is taken in a tendency that is not split into terms."""
 
 
 def _take(rates: dict[str, float], integral: str, part: str, rate: float) -> None:
-    """Take the `rate` of a part of a term from the cause that it was taken for."""
+    """Subtract the `rate` of a part of a term from the cause that it was taken for."""
     if rate != 0.0:
         rates[rate_name(integral, _TAKEN_FOR[part][integral])] -= rate
 
@@ -133,8 +134,8 @@ def rates_of_time(
 ) -> dict[str, float]:
     """Rates that the causes do not explain: those of the time step, from a row of diagnostics and the one before.
 
-    They are the mean rates of change in between less the mean of the causes' sums of both rows: all of the former where
-    the causes vanish, else with what they varied in between. Zero in the first row.
+    They are the mean rates of change between the rows minus the summed causes, averaged over both rows. If the causes
+    vanish, that is all of the change; otherwise it includes their variation between the rows. Zero in the first row.
     """
     rates = {}
     for integral, causes in causes_of_change(terms).items():
@@ -160,7 +161,7 @@ _NONE = _Work()
 
 
 def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, acceleration: Array) -> _Work:
-    """What an `acceleration` at edges does."""
+    """What an `acceleration` at edges does to the integrals."""
     mesh, flux = model.closed, np.empty(model.mesh.n_edges)
     model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
 
@@ -183,7 +184,7 @@ def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, ac
 
 
 def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bernoulli: Array, q: Array) -> _Work:
-    """What a tendency of thickness at cells does."""
+    """What a tendency of thickness at cells does to the integrals."""
     mesh = model.closed
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
@@ -206,7 +207,7 @@ def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bern
 def _work_of_forces(
     model: ShallowWaterModel, state: State, acceleration: Array, bernoulli: Array, q: Array
 ) -> tuple[_Work, _Work]:
-    """What minus the gradient of the Bernoulli function does, and what the rest of the acceleration does."""
+    """What minus the gradient of the Bernoulli function, and then the rest of the acceleration, do to the integrals."""
     mesh = model.closed
     flux = np.empty(model.mesh.n_edges)
     model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)

@@ -1,6 +1,6 @@
-"""Compiled loops of global integrals: their terms, and sums of them that depend on no order (`swe.parallel.folding`).
+"""Compiled loops for global integrals: their terms, and sums of these in any order (`swe.parallel.folding`).
 
-Letters are those of `swe.equations.kernels`.
+The letters are those of `swe.equations.kernels`.
 """
 
 import numba
@@ -10,7 +10,7 @@ from mesh.arrays import Array, Index, Signs
 from swe.parallel.folding import NOTHING, add, add_all
 
 CHUNK = 256
-"""Terms that are summed together; they stay in the first cache."""
+"""Number of terms summed together; they stay in the first-level cache."""
 
 inlined = numba.njit(error_model="numpy", fastmath={"contract"}, forceinline=True)
 compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
@@ -71,7 +71,7 @@ def energy_along(
     """Parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v; see `work_of`.
 
     The increments p and v lead to `h_after` and `u_after`. The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges,
-    `half` being l_e d_e / 2, and of g A_i h_i (h_i/2 + height_i) over cells. Largest terms are not told.
+    `half` being l_e d_e / 2, and of g A_i h_i (h_i/2 + height_i) over cells. The largest terms are not recorded.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
@@ -137,8 +137,8 @@ def work_of(
 ) -> None:
     """Parts (blocks, 3, 3) of what accelerations a_e do to total energy, absolute vorticity and potential enstrophy.
 
-    The sums of l_e d_e F_e a_e over edges, of the circulation C_v = sum_e t_ev d_e a_e over vertices, and of q_v C_v.
-    Each is folded by `coarse` and `fine` (3,), see `swe.parallel.folding`.
+    These are the sums of l_e d_e F_e a_e over edges, and of the circulation C_v = sum_e t_ev d_e a_e and of q_v C_v
+    over vertices. Each is folded by `coarse` and `fine` (3,), see `swe.parallel.folding`.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
@@ -170,8 +170,8 @@ def work_of_transport(
 ) -> None:
     """Parts (blocks, 3, 3) of what tendencies of thickness do to mass, total energy and potential enstrophy.
 
-    The sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices; folded as
-    those of `work_of`.
+    These are the sums of A_i dh_i and of A_i B_i dh_i over cells, and of -q_v^2/2 sum_i kite_vi dh_i over vertices,
+    folded like those of `work_of`.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):
@@ -210,10 +210,10 @@ def work_of_forces(
     fine: Array,
     sums: Array,
 ) -> None:
-    """Parts (blocks, 5, 3) of what minus the gradient of B, and what else is in du, do: see `work_of`.
+    """Parts (blocks, 5, 3) of what minus the gradient of B does, and then the rest of du; see `work_of`.
 
-    To energy and absolute vorticity the former, to these and potential enstrophy the latter. The gradient's share of
-    potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
+    For the gradient they concern total energy and absolute vorticity, for the rest potential enstrophy as well. The
+    gradient's share of potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):

@@ -1,4 +1,4 @@
-"""Global integrals that the continuous equations conserve, and their changes in the course of a run."""
+"""Global integrals that the continuous equations conserve, and their changes during a run."""
 
 import sys
 from dataclasses import dataclass
@@ -14,8 +14,8 @@ from swe.state import State
 class Invariants:
     """Mass (m3), energies (m5/s2), potential enstrophy (m/s2) and absolute vorticity (m2/s), per unit density.
 
-    `available_potential_energy` counts from the state of rest with the same mass and a level surface.
-    `potential_energy_of_depth` counts from the bottom everywhere, so that it is positive whatever the topography.
+    `available_potential_energy` is measured from the state of rest with the same mass and a level surface.
+    `potential_energy_of_depth` is measured from the bottom everywhere, so it is positive whatever the topography.
     `planetary_vorticity_magnitude` is the integral of |f|, the yardstick for changes of absolute vorticity.
     """
 
@@ -40,7 +40,7 @@ class Invariants:
 
     @property
     def energy_of_depth(self) -> float:
-        """Kinetic energy and potential energy of the depth, m5/s2; positive, and of the size of what is summed."""
+        """Kinetic energy and potential energy of the depth, m5/s2; positive, and as large as the terms summed."""
         return self.kinetic_energy + self.potential_energy_of_depth
 
 
@@ -86,8 +86,9 @@ def _level(model: ShallowWaterModel, mass: float) -> float:
 class Changes:
     """Changes since the start, each relative to a yardstick.
 
-    Mass is measured by the initial mass, total energy by the initial available and, beside it, by the initial total
-    energy, potential enstrophy by its initial value, absolute vorticity by the integral of |f|.
+    The change of mass is relative to the initial mass, that of total energy to the initial available energy and, as a
+    second number, to the initial total energy, that of potential enstrophy to its initial value, and that of absolute
+    vorticity to the integral of |f|.
     """
 
     mass: float
@@ -100,8 +101,8 @@ class Changes:
 def relative_changes(initial: Invariants, present: Invariants) -> Changes:
     """Changes from `initial` to `present`.
 
-    A yardstick of zero (no rotation) is replaced by one, and an available energy (of a level surface at rest) or a
-    total (that topography below zero makes vanish) which is lost in round-off by `Invariants.energy_of_depth`.
+    A yardstick of zero (no rotation) is replaced by one. An available energy (of a level surface at rest) or total
+    energy (cancelled by topography below zero) that is lost in round-off is replaced by `Invariants.energy_of_depth`.
     """
     energy = (present.kinetic_energy - initial.kinetic_energy) + (present.potential_energy - initial.potential_energy)
     return Changes(
@@ -116,6 +117,6 @@ def relative_changes(initial: Invariants, present: Invariants) -> Changes:
 
 
 def _energy_yardstick(energy: float, initial: Invariants) -> float:
-    """The magnitude of `energy`, or the energy of the initial depth where it is lost in the round-off of that."""
+    """The magnitude of `energy`, or the energy of the initial depth if `energy` is lost in its round-off."""
     lost = abs(energy) <= sys.float_info.epsilon * initial.energy_of_depth
     return (initial.energy_of_depth or 1.0) if lost else abs(energy)

@@ -1,6 +1,6 @@
 """The one table of what a run writes: names, places, units, meanings, and how each follows from the state.
 
-History and diagnostics files, what reads them and what draws them all go by it.
+History and diagnostics files, their readers and the plots all follow it.
 """
 
 from collections.abc import Callable, Iterable, Mapping
@@ -24,9 +24,9 @@ CELLS, EDGES, VERTICES = "nCells", "nEdges", "nVertices"
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """A state and all that outputs are made of, each computed when it is first asked for.
+    """A state and everything that outputs are made of, each computed on first use.
 
-    `tendency(state, result, time)` is what the run takes its steps with; `initial` are the invariants of its start.
+    `tendency(state, result, time)` is the one with which the run takes its steps; `initial` are its initial invariants.
     """
 
     model: ShallowWaterModel
@@ -58,7 +58,7 @@ class Evaluation:
 
     @cached_property
     def rates(self) -> dict[str, float]:
-        """Rates of the global integrals, but for those of the time step."""
+        """Rates of the global integrals, except those of the time step."""
         tendency = self.state.empty_like()
         self.tendency(self.state, tendency, self.time)
         return measure_rates(self.model, self.state, self.diagnosis, tendency, self.time)
@@ -123,15 +123,15 @@ FIELDS = {
         VERTICES, "m-1 s-1", "potential vorticity (f + zeta)/h", lambda now: now.diagnosis.potential_vorticity
     ),
 }
-"""Fields of the snapshots by name; a run writes all of them, or those that the user chooses."""
+"""Fields of the snapshots by name; a run writes all of them, or those chosen by the user."""
 
 TOPOGRAPHY = Field(CELLS, "m", "height of the bottom", lambda now: now.model.topography, "surface_altitude")
-"""The field that stays as it is, and stands in the history once."""
+"""The field that stays fixed, and is written to the history once."""
 
 
 @dataclass(frozen=True)
 class Series:
-    """A number that each row of the diagnostics holds; no `value` where it follows from two rows."""
+    """A number that each row of the diagnostics holds; no `value` if it follows from two rows."""
 
     units: str
     meaning: str
@@ -190,7 +190,7 @@ def series_of(terms: Iterable[Term] = ()) -> dict[str, Series]:
 
 
 SERIES = series_of()
-"""Series of every run; terms of the user's add theirs."""
+"""Series of every run; the user's own terms add theirs."""
 
 
 def row_of(now: Evaluation, before: Mapping[str, float] | None) -> dict[str, float]:
@@ -202,9 +202,9 @@ def row_of(now: Evaluation, before: Mapping[str, float] | None) -> dict[str, flo
 
 
 def chosen_fields(names: Iterable[str] | None) -> tuple[str, ...]:
-    """The names of `FIELDS` that are asked for, in the order of the table; all where `names` is None.
+    """The requested names of `FIELDS`, in the order of the table; all of them if `names` is None.
 
-    Raises `InputError` where there is no field of a name, or none is asked for.
+    Raises `InputError` if a name is unknown, or none is requested.
     """
     if names is None:
         return tuple(FIELDS)

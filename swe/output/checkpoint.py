@@ -1,6 +1,6 @@
-"""Checkpoints of a run: the state to go on from, written aside and renamed; the last two are kept.
+"""Checkpoints of a run: the state to resume from, written aside and renamed; the last two are kept.
 
-A file is a zip archive of numpy arrays whose check sums tell whether it is whole.
+A file is a zip archive of numpy arrays, whose checksums show whether it is whole.
 """
 
 import os
@@ -20,21 +20,21 @@ PATTERN = "checkpoint.*.npz"
 """All checkpoints of a run."""
 
 NUMBERED = "checkpoint.[0-9]*.npz"
-"""Those at their intervals, at a stop and at an end that is none of a longer run, by the number of steps."""
+"""Those written at intervals, at a stop and at an end that a longer run would not pass through, by number of steps."""
 
 SHARED = "checkpoint.shared.npz"
-"""The last state that a longer run has too (`swe.stepping.schedule.last_shared`); no numbered one may hold it."""
+"""The last state that a longer run passes through too (`last_shared`), which perhaps no numbered one holds."""
 
 COUNTS = ("steps", "snapshots", "rows", "history_size", "diagnostics_size")
-"""Integers of a checkpoint."""
+"""Integers that a checkpoint holds."""
 
 
 @dataclass(frozen=True, eq=False)
 class Checkpoint:
     """A state at `time`, seconds since the start, after `steps` steps.
 
-    `snapshots` and `rows` are the numbers of snapshots and of rows of diagnostics that were written until then, and
-    `history_size` and `diagnostics_size` the bytes that their files had.
+    `snapshots` and `rows` are the numbers of snapshots and of rows of diagnostics written until then, and
+    `history_size` and `diagnostics_size` the sizes of their files, bytes.
     """
 
     state: State
@@ -47,9 +47,9 @@ class Checkpoint:
 
 
 def write_checkpoint(directory: Path, checkpoint: Checkpoint, shared: bool = False) -> None:
-    """Write a checkpoint to a run directory and remove all but the last two; raise `RunError` where that fails.
+    """Write a checkpoint to a run directory and remove all but the last two; raise `RunError` if that fails.
 
-    The one `shared` with longer runs has a place of its own, where it stays until another takes it.
+    The one `shared` with longer runs has a file of its own, which stays until the next one replaces it.
     """
     path = directory / (SHARED if shared else _name(checkpoint.steps))
     try:
@@ -70,9 +70,9 @@ def write_checkpoint(directory: Path, checkpoint: Checkpoint, shared: bool = Fal
 
 
 def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float = float("inf")) -> Checkpoint | None:
-    """The last checkpoint of a run directory that is whole and not after `latest`, seconds; None where there is none.
+    """The last whole checkpoint in a run directory not after `latest`, seconds; None if there is none.
 
-    Warns with `SetupWarning` of one that is damaged; raises `InputError` where all are.
+    Warns with `SetupWarning` of damaged ones; raises `InputError` if all are damaged.
     """
     shared = [path for path in (directory / SHARED,) if path.exists()]
     numbered = checkpoint_paths(directory)[::-1]
@@ -81,7 +81,7 @@ def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float =
         for path in paths:
             try:
                 checkpoint = _read(path, n_cells, n_edges)
-            except Exception as error:  # of all kinds, as any byte may be another
+            except Exception as error:  # of any kind, as any byte may be corrupt
                 warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
                 continue
             any_whole = True
@@ -94,9 +94,9 @@ def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float =
 
 
 def remove_checkpoints(directory: Path, after: int = 0) -> None:
-    """Remove the checkpoints of a run that is to be replaced, or those after so many steps where it takes another way.
+    """Remove the checkpoints of a run to be replaced, or those `after` so many steps if it takes a different course.
 
-    The one that is shared goes with all of them only.
+    The shared one is removed only together with all the others.
     """
     if after == 0:
         (directory / SHARED).unlink(missing_ok=True)
@@ -106,7 +106,7 @@ def remove_checkpoints(directory: Path, after: int = 0) -> None:
 
 
 def remove_superseded(directory: Path, steps: int) -> None:
-    """Remove the checkpoint that is shared where there is a numbered one after `steps` steps, all of the run."""
+    """Remove the shared checkpoint if there is a numbered one after `steps` steps, the last of the run."""
     if (directory / _name(steps)).exists():
         (directory / SHARED).unlink(missing_ok=True)
 
@@ -116,12 +116,12 @@ def _name(steps: int) -> str:
 
 
 def checkpoint_paths(directory: Path) -> list[Path]:
-    """Checkpoints of a run directory at their intervals, the oldest first."""
+    """Numbered checkpoints in a run directory, oldest first."""
     return sorted(directory.glob(NUMBERED))
 
 
 def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:
-    """The checkpoint at `path`; raises one of several errors where it is none of such a mesh."""
+    """The checkpoint at `path`; raises one of several errors if it is not one for such a mesh."""
     with np.load(path) as file:
         state = State(file["thickness"], file["normal_velocity"])
         time, counts = file["time"], file["counts"]

@@ -1,4 +1,4 @@
-"""What is told of a run: what it is made of, and where it stands."""
+"""Descriptions of a run: what it is made of, and where it stands."""
 
 import hashlib
 from collections.abc import Iterable
@@ -19,16 +19,16 @@ from swe.state import State
 from swe.stepping.time_stepping import Tendency
 
 ABSENT: dict[str, object] = {"fields": list(FIELDS), "forcings": []}
-"""What is so of runs of earlier versions, whose records do not tell."""
+"""What holds for runs of earlier versions, whose records do not say."""
 
 
 @dataclass(frozen=True, eq=False)
 class RunDescription:
-    """What is written of a run that does not change in its course, and what its diagnostics are made with.
+    """What is written about a run and does not change as it proceeds, and what its diagnostics are made with.
 
-    `start_hash` is what the function of that name gives, taken before the first step, as states change in place.
-    `fields` are the names of those that snapshots hold, `forcings` those of the terms that the case adds, and `loops`
-    which ones take the steps, "fused" or "plain".
+    `start_hash` is the result of the function of that name before the first step, as states change in place. `fields`
+    are the names of the fields in snapshots, `forcings` those of the terms added by the case, and `loops` says which
+    loops take the steps, "fused" or "plain".
     """
 
     case_name: str
@@ -49,7 +49,7 @@ class RunDescription:
 
 @dataclass(frozen=True, eq=False)
 class Moment:
-    """Where a run stands: seconds since its start, steps taken, state, Courant number, and what gives the tendency."""
+    """Where a run stands: seconds since its start, steps taken, state, Courant number, and the tendency function."""
 
     time: float
     steps: int
@@ -59,7 +59,7 @@ class Moment:
 
 
 def described(run: RunDescription) -> dict[str, object]:
-    """What a run must have in common with the one that it goes on from, as the record has it."""
+    """What a run must have in common with the one that it resumes, as the record stores it."""
     try:
         as_recorded = recorded(run.parameters)
     except (TypeError, ValueError, RecursionError) as error:
@@ -78,7 +78,7 @@ def described(run: RunDescription) -> dict[str, object]:
 
 
 def start_hash(model: ShallowWaterModel, state: State, forcings: Iterable[Term] = ()) -> str:
-    """SHA-256, in hexadecimal, of the initial `state`, topography, Coriolis parameter and what the `forcings` add."""
+    """SHA-256, in hexadecimal, of gravity, `state`, topography, Coriolis parameter and tendencies of the `forcings`."""
     digest = hashlib.sha256(np.float64(model.gravity).tobytes())
     added = [values for term in forcings for values in vars(model.tendency_of(term, state)).values()]
     for values in (*vars(state).values(), model.topography, model.coriolis, *added):
@@ -87,7 +87,7 @@ def start_hash(model: ShallowWaterModel, state: State, forcings: Iterable[Term] 
 
 
 def difference(name: str, then: object, now: object) -> str:
-    """What is different between the run that a directory holds and the one that is asked for, as part of a sentence."""
+    """How the run in a directory differs from the one asked for, as part of a sentence."""
     if isinstance(then, dict) and isinstance(now, dict):
         for key in (*now, *then):
             if then.get(key) != now.get(key):

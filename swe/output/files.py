@@ -1,7 +1,7 @@
 """The files of a run directory: the mesh, snapshots, diagnostics and the record of the run (DESIGN, section 5).
 
-Files that grow are of the classic format with 64-bit offsets: rows follow each other, so that a file is readable
-whatever happens to the program, and rows can be written again. Equal runs give equal files, byte for byte.
+Files that grow use the classic format with 64-bit offsets: rows follow one another, so that a file stays readable
+whatever happens to the program, and rows can be written again. Identical runs write identical files, byte for byte.
 """
 
 import json
@@ -31,13 +31,13 @@ RECORD_FILE = "run.json"
 FIGURES_FOLDER = "figures"
 
 SECONDS_BETWEEN_WRITES = 1.0
-"""Rows of diagnostics are written together, as each writing takes as long as many rows."""
+"""Rows of diagnostics are written in batches, as each write takes as long as many rows."""
 
 GEOMETRY = frozenset(BY_NAME) - {
     *("n_edges_on_edge", "edges_on_edge", "weights_on_edge", "kite_areas_on_vertex"),
     *("angle_edge", "mesh_density", "boundary_vertex"),
 }
-"""Mesh arrays repeated in the history file, so that it can be plotted and integrated by itself."""
+"""Mesh arrays repeated in the history file, so that it can be plotted and integrated on its own."""
 
 TIME_COORDINATE = "Time"
 
@@ -45,13 +45,13 @@ PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
 COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVertices": "lonVertex latVertex"}
-"""Where the values at cells, edges and vertices lie, as the CF conventions have it."""
+"""Coordinates of the values at cells, edges and vertices, as the CF conventions require them."""
 
 
 def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], description: Mapping[str, Any]) -> None:
-    """Make a history file without snapshots, for `fields`; raise `RunError` where it cannot be written.
+    """Create a history file without snapshots, for `fields`; raise `RunError` if it cannot be written.
 
-    Attributes name what the `description` of the run tells.
+    Its attributes come from the `description` of the run.
     """
     mesh = model.mesh
     with _new_file(path) as file:
@@ -69,7 +69,7 @@ def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], 
 
 
 def create_diagnostics(path: Path, model: ShallowWaterModel, description: Mapping[str, Any]) -> None:
-    """Make a diagnostics file without rows; raise `RunError` where it cannot be written."""
+    """Create a diagnostics file without rows; raise `RunError` if it cannot be written."""
     with _new_file(path) as file:
         file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(model, description)})
         _define_time(file)
@@ -78,7 +78,7 @@ def create_diagnostics(path: Path, model: ShallowWaterModel, description: Mappin
 
 
 def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dict[str, object]:
-    """Global attributes that tell which run a file is of; nothing that differs between equal runs."""
+    """Global attributes that identify the run of a file; nothing that differs between identical runs."""
     return {
         "title": f"{description['case']}, a run of the shallow-water model of trisk",
         "case": description["case"],
@@ -105,10 +105,10 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 
 
 class _TimeFile:
-    """A file that grows along time; `rows` are those that stay, all by default, and what follows them is cut off.
+    """A file that grows along time; the first `rows` stay, all by default, and what follows them is cut off.
 
-    Raises `InputError` where the file is not one to go on with: it cannot be read, lacks a variable, is shorter than
-    `size` bytes, or its first `rows` are not those of ascending times.
+    Raises `InputError` if the file cannot be continued: it cannot be read, lacks a variable, is shorter than `size`
+    bytes, or the times of its first `rows` do not increase.
     """
 
     def __init__(self, path: Path, names: Iterable[str], rows: int | None = None, size: int = 0) -> None:
@@ -163,7 +163,7 @@ class _TimeFile:
 
 
 def _opened(path: Path) -> netCDF4.Dataset:
-    """The file, to be read and written."""
+    """The file, open for reading and writing."""
     file = opened_dataset(path, "r+")
     # Values are written as they are; looking for masks and scales takes as long as writing them.
     file.set_auto_maskandscale(False)
@@ -171,9 +171,9 @@ def _opened(path: Path) -> netCDF4.Dataset:
 
 
 def _cut_off(path: Path, rows: int, size: int) -> None:
-    """Leave the first `rows` rows of a file of the classic format, which has `size` bytes then."""
+    """Keep only the first `rows` rows of a file in the classic format, which then has `size` bytes."""
     with path.open("r+b") as file:
-        file.seek(4)  # behind the letters that tell the format stands the number of rows
+        file.seek(4)  # the number of rows follows the letters that name the format
         file.write(rows.to_bytes(4, "big"))
         file.truncate(size)
 
@@ -192,7 +192,7 @@ class HistoryFile(_TimeFile):
 
 
 class DiagnosticsFile(_TimeFile):
-    """Time series, named by `names`; rows wait for each other for up to a second."""
+    """Time series of the given `names`; rows wait up to a second and are written together."""
 
     def __init__(self, path: Path, names: Iterable[str] = SERIES, rows: int | None = None, size: int = 0) -> None:
         names = tuple(names)
@@ -205,21 +205,21 @@ class DiagnosticsFile(_TimeFile):
                 self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *names)}
 
     def append(self, now: Evaluation) -> None:
-        """Add the row of a state."""
+        """Add the row for a state."""
         self._last = row_of(now, self._last)
         self._waiting.append(self._last)
         if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()
 
     def flush(self) -> None:
-        """Write the rows that wait."""
+        """Write the waiting rows."""
         waiting, self._waiting = self._waiting, []
         if waiting:
             self._write({name: np.array([row[name] for row in waiting]) for name in waiting[0]})
         self._written = clock.monotonic()
 
     def close(self) -> None:
-        """Write the rows that wait, and close the file; the former may raise `RunError`."""
+        """Write the waiting rows and close the file; writing may raise `RunError`."""
         try:
             self.flush()
         finally:
@@ -227,7 +227,7 @@ class DiagnosticsFile(_TimeFile):
 
 
 def read_record(directory: Path) -> dict[str, object] | None:
-    """What `run.json` holds, None where there is none; raise `InputError` where it is no record of a run."""
+    """The contents of `run.json`, None if there is none; raise `InputError` if it is not the record of a run."""
     path = directory / RECORD_FILE
     try:
         return load_record(directory)
@@ -240,7 +240,7 @@ def read_record(directory: Path) -> dict[str, object] | None:
 
 
 def load_record(directory: Path) -> dict[str, Any]:
-    """What `run.json` holds; raises what comes of reading it, or `TypeError`, where it is no record."""
+    """The contents of `run.json`; raises any error of reading it, or `TypeError` if it is not the record of a run."""
     record = json.loads((directory / RECORD_FILE).read_text())
     if not isinstance(record, dict):
         raise TypeError(f"{RECORD_FILE} is not the record of a run")
@@ -254,7 +254,7 @@ def write_record(directory: Path, record: dict[str, object]) -> None:
 
 
 def package_versions() -> dict[str, str]:
-    """Versions of this package and of those that results depend on."""
+    """Versions of this package and of the packages that results depend on."""
     versions = {}
     for name in PACKAGES:
         try:
@@ -278,7 +278,7 @@ def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units
 
 
 def _define_time(file: netCDF4.Dataset) -> None:
-    """Define `time`, and again under the name of the dimension, which makes it a coordinate to select by."""
+    """Define `time`, and a copy named like the dimension, which makes it a coordinate to select by."""
     file.createDimension("Time", None)
     attributes = {
         "units": "seconds since 2000-01-01 00:00:00",
@@ -292,7 +292,7 @@ def _define_time(file: netCDF4.Dataset) -> None:
 
 
 def read_series(path: Path) -> dict[str, Array]:
-    """All series of a diagnostics file by name, `time` among them; runs of earlier versions have no rates."""
+    """All series of a diagnostics file by name, including `time`; runs of earlier versions have no rates."""
     with dataset(path) as file:
         optional = set(rate_series()) - set(file.variables)
         names = ["time", *(name for name in SERIES if name not in optional)]

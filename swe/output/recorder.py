@@ -1,4 +1,4 @@
-"""What a run leaves in its directory, and how it goes on from there."""
+"""What a run leaves in its directory, and how it resumes from there."""
 
 import os
 import time as clock
@@ -42,10 +42,10 @@ from swe.output.files import (
 class Recorder:
     """Writes snapshots, diagnostics, checkpoints and the record of a run.
 
-    `early_end` says, in words, why a run ended before its time, if it did.
+    `early_end` says, in words, why a run ended early, if it did.
 
-    Raises `InputError` where the directory cannot be used, holds a run already that is neither to be replaced nor to
-    go on, or one to go on with that was made otherwise.
+    Raises `InputError` if the directory cannot be used, already holds a run that is neither to be replaced nor resumed,
+    or holds a run to resume that was made with other settings.
     """
 
     def __init__(self, run: RunDescription, directory: Path, overwrite: bool, resume: bool) -> None:
@@ -69,11 +69,11 @@ class Recorder:
 
     @property
     def resumed(self) -> bool:
-        """Whether the run goes on from what an earlier one left."""
+        """Whether the run resumes an earlier one."""
         return self._found is not None
 
     def _require_same(self, before: dict[str, object]) -> None:
-        """Raise `InputError` where the run of an earlier record was made otherwise; take over its days and time."""
+        """Raise `InputError` if the earlier run was made with other settings; take over its days and elapsed time."""
         for name, now in self._description.items():
             then = before.get(name, ABSENT.get(name))
             if then != now:
@@ -88,7 +88,7 @@ class Recorder:
         self._seconds_before = _number_in(before, "wall_seconds", self.directory)
 
     def restore(self) -> Checkpoint | None:
-        """The last checkpoint of the run to be gone on with; None, with a warning, where that begins again."""
+        """The last checkpoint of the run to resume; None for a new run or, with a warning, if there is none."""
         if not self.resumed:
             return None
         self._reached = self._last_checkpoint()
@@ -97,12 +97,12 @@ class Recorder:
         return self._reached
 
     def other_end(self, days: float) -> float | None:
-        """Days to which the run to be gone on with was made, once, where these are others than `days`."""
+        """Days that the run to resume was to last, if they differ from `days`; None at any later call."""
         before, self._days_before = self._days_before, None
         return None if before == days else before
 
     def restore_shared(self, days: float, shared: float) -> Checkpoint | None:
-        """The last checkpoint up to `shared` seconds, from which a run to `days` goes on; None to begin again."""
+        """The last checkpoint up to `shared` seconds, from which a run to `days` resumes; None to begin again."""
         self._reached = self._last_checkpoint(shared)
         if self._reached is None and shared > 0.0:
             warnings.warn(
@@ -117,16 +117,16 @@ class Recorder:
         return last_checkpoint(self.directory, mesh.n_cells, mesh.n_edges, latest=latest)
 
     def _require_unchanged(self) -> None:
-        """Raise `InputError` where another run wrote to the directory since this one looked at it."""
+        """Raise `InputError` if another run has written to the directory since this one looked at it."""
         if not self._began and run_to_go_on_with(self.directory, self._overwrite, self._resume) != self._found:
             raise InputError(f"{self.directory} was written to by another run meanwhile; start again")
         self._began = True
 
     @contextmanager
     def recording(self, days: float, shared: float, now: Callable[[], Moment]) -> Iterator[None]:
-        """Keep the files open in the course of a run to `days`, and write how it ended; `now` tells where it stands.
+        """Keep the files open during a run to `days`, and write how it ended; `now` returns where it stands.
 
-        Up to `shared` seconds the run is that of any longer one.
+        Up to `shared` seconds the run is the same as any longer one.
         """
         self._days = days
         self._begun = clock.perf_counter()
@@ -140,7 +140,7 @@ class Recorder:
                 yield
                 self._close()
             except InputError:
-                self._close()  # the files are not those of a run to go on with, and stay as they are
+                self._close()  # the files are not those of the run to resume, and stay as they are
                 raise
             except BaseException as error:
                 stopped = isinstance(error, RunStopped | KeyboardInterrupt)
@@ -151,14 +151,14 @@ class Recorder:
             self._end(now(), "stopped" if self.early_end else "completed", self.early_end)
 
     def _open(self, moment: Moment) -> None:
-        """Open the files where the run goes on; at its start create them, and write the first snapshot and row."""
+        """Open the files where the run continues; at its start create them, and write the first snapshot and row."""
         remove_leftovers(self.directory, (*FILES, PATTERN))
         history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
         starting, reached = moment.steps == 0, self._reached
         run, series = self._run, series_of(self._run.model.terms)
         if starting:
             remove_checkpoints(self.directory)
-            (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that what goes on finds no mesh of another run
+            (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that a resumed run finds no mesh of another run
             self._write_status(moment, "running")
             create_history(history, run.model, run.fields, self._description)
             create_diagnostics(diagnostics, run.model, self._description)
@@ -211,7 +211,7 @@ class Recorder:
             self._diagnostics.append(now)
 
     def checkpoint(self, moment: Moment, shared: bool = False) -> None:
-        """Write a checkpoint, after all that comes before it; see `write_checkpoint`."""
+        """Write a checkpoint, after all output that precedes it; see `write_checkpoint`."""
         assert self._history is not None
         assert self._diagnostics is not None
         self._diagnostics.flush()
@@ -237,7 +237,7 @@ class Recorder:
         self._history = self._diagnostics = None
 
     def _end(self, moment: Moment, status: str, reason: str = "") -> None:
-        """Close what is open and write the final status, however little of it the disk takes."""
+        """Close the open files and write the final status, as far as the disk allows."""
         try:
             self._close()
         except RunError:
@@ -264,7 +264,7 @@ class Recorder:
             write_record(self.directory, record)
         except OSError as error:
             if status == "failed":
-                return  # the error that comes first is the one to tell
+                return  # the first error is the one to report
             raise RunError(
                 f"{self.directory / RECORD_FILE} cannot be written ({error.strerror or error}); is the disk full?"
             ) from error
@@ -276,9 +276,9 @@ HOW_TO_GO_ON = "give the same options, or another directory"
 
 
 def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[str, object] | None:
-    """The record of the run in `directory` where it is to be gone on with; None where a run begins there.
+    """The record of the run in `directory` if it is to be resumed; None if a new run begins there.
 
-    Raises `InputError` where the directory cannot be used, or holds a run that is neither to be replaced nor to go on.
+    Raises `InputError` if the directory cannot be used, or holds a run that is neither to be replaced nor resumed.
     """
     existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
@@ -306,12 +306,12 @@ def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[st
 
 
 def days_of(record: dict[str, object], directory: Path) -> float:
-    """Days that a run was to last according to its `record`; raise `InputError` where that does not tell."""
+    """Days that a run was to last according to its `record`; raise `InputError` if the record does not say."""
     return _number_in(record, "days", directory)
 
 
 def fields_of(record: dict[str, object] | None) -> list[str] | None:
-    """Names of the fields that a run writes according to its `record`; None, for all, where it does not tell."""
+    """Names of the fields that a run writes according to its `record`; None, for all, if it does not say."""
     fields = None if record is None else record.get("fields")
     return [str(name) for name in fields] if isinstance(fields, list) else None
 

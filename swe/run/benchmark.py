@@ -1,4 +1,4 @@
-"""What a step costs, beside the plain loops and beside what the memory of the machine could do."""
+"""What a step costs, compared with the plain loops and with the memory bandwidth of the machine."""
 
 import time
 from collections.abc import Callable
@@ -14,23 +14,23 @@ from swe.stepping.time_stepping import RungeKutta
 from swe.tiles.fused import FusedRungeKutta
 
 ROUNDS = 9
-"""The fused step, the plain one and the triad take turns this many times; medians are what is told."""
+"""The fused step, the plain one and the triad take turns this many times; medians are reported."""
 
 SECONDS_PER_TURN = 0.3
-"""The fused step is repeated for about so long in a turn, and the plain one half as often."""
+"""The fused step is repeated for about this long in a turn, and the plain one half as often."""
 
 TRIAD_SIZE = 25_000_000
-"""Three arrays of 200 MB: more than the last cache holds."""
+"""Three arrays of 200 MB: more than the last-level cache holds."""
 
 
 @dataclass(frozen=True)
 class Timing:
     """Medians over alternating turns; a step is one of classical RK4.
 
-    `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that by the time.
-    `triad_gb_per_s` is the rate of the triad of STREAM (McCalpin 1995), a = b + 3 c, in the same process, with two
-    arrays read and one written, and `fraction_of_triad` their ratio. `plain_twin_ratio` is the median over the turns
-    of the plain step's time by that of the fused one.
+    `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that divided by the
+    time. `triad_gb_per_s` is the rate of the STREAM triad (McCalpin 1995), a = b + 3 c, in the same process, with two
+    arrays read and one written, and `fraction_of_triad` is the ratio of the two rates. `plain_twin_ratio` is the median
+    over the turns of the plain step's time divided by that of the fused one.
     """
 
     cells: int
@@ -45,9 +45,9 @@ class Timing:
 
 
 def measure(simulation: Simulation) -> Timing:
-    """Time steps of the fused and of the plain path from the state of `simulation`, which is left as it is.
+    """Time steps of the fused and of the plain path from the state of `simulation`, which is left unchanged.
 
-    Raises `RunError` where the state does not survive the steps.
+    Raises `RunError` if the state blows up.
     """
     model, fused, time_step = simulation.model, simulation.method, simulation.configuration.time_step
     assert isinstance(fused, FusedRungeKutta)
@@ -84,7 +84,7 @@ def measure(simulation: Simulation) -> Timing:
 
 
 def _seconds(work: Callable[[], object], repeats: int) -> float:
-    """Seconds that `work` takes, the mean of `repeats`."""
+    """Seconds that `work` takes, the mean of `repeats` calls."""
     begin = time.perf_counter()
     for _ in range(repeats):
         work()

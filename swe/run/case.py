@@ -1,4 +1,4 @@
-"""What a simulation asks of a test case, and the fields that it gets, checked."""
+"""What a simulation requires of a test case, and the fields that it gets from it, checked."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -18,9 +18,9 @@ from swe.state import State
 
 
 class Case(Protocol):
-    """What a simulation asks of a test case: see `cases.base.Case`.
+    """What a simulation requires of a test case: see `cases.base.Case`.
 
-    A case may have a function `terms()` as well, which gives what it adds to the equations.
+    A case may also have a function `terms()`, which returns the terms that it adds to the equations.
     """
 
     @property
@@ -37,13 +37,13 @@ class Case(Protocol):
 
     @property
     def prescribed_wind(self) -> bool:
-        """Whether the wind stays as it is at the start, so that only thickness evolves."""
+        """Whether the wind stays as it was at the start, so that only thickness evolves."""
 
     def initial_state(self, mesh: VoronoiMesh, sampling: Sampling) -> State:
-        """State at time zero, thickness at the centres of cells or the mean over each."""
+        """State at time zero; thickness at cell centres, or its mean over each cell."""
 
     def topography_on(self, mesh: VoronoiMesh, sampling: Sampling) -> Array:
-        """Height of the bottom at the centres of cells or the mean over each, m."""
+        """Height of the bottom at cell centres, or its mean over each cell, m."""
 
     def coriolis_on(self, mesh: VoronoiMesh) -> Array:
         """Coriolis parameter at vertices, 1/s."""
@@ -54,9 +54,9 @@ class Case(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class CaseFields:
-    """A case on a mesh in metres: the fields that the equations need, their start, and terms that the case adds.
+    """A case on a mesh in metres: the fields that the equations need, the initial state, and terms added by the case.
 
-    `kites_matter` where the thickness at a vertex may be outside of what its cells have, and is used.
+    `kites_matter` is true if thickness at vertices is used and may lie outside the range of their cells.
     """
 
     case: Case
@@ -69,7 +69,7 @@ class CaseFields:
 
 
 def case_fields(case: Case, mesh: VoronoiMesh, sampling: Sampling) -> CaseFields:
-    """The fields of `case` on `mesh`, scaled to its radius; raises `InputError` where they are not sound."""
+    """The fields of `case` on `mesh`, scaled to its radius; raises `InputError` if they are invalid."""
     mesh = mesh.scaled(case.radius)
     topography = _asked(case, case.topography_on, mesh, sampling)
     coriolis = _asked(case, case.coriolis_on, mesh)
@@ -81,7 +81,7 @@ def case_fields(case: Case, mesh: VoronoiMesh, sampling: Sampling) -> CaseFields
 
 
 def initial_state(case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matter: bool) -> State:
-    """The state at time zero, at rest at walls; raises `InputError` where it is not sound."""
+    """The state at time zero, at rest at walls; raises `InputError` if it is invalid."""
     state = _asked(case, case.initial_state, mesh, sampling)
     if not isinstance(state, State):
         raise InputError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
@@ -98,7 +98,7 @@ def initial_state(case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matte
 
 
 def _forcings(case: Case) -> tuple[Forcing, ...]:
-    """The terms that the case adds, none where it has no `terms`."""
+    """The terms added by the case; none if it has no `terms`."""
     terms = getattr(case, "terms", None)
     if terms is None:
         return ()
@@ -109,7 +109,7 @@ def _forcings(case: Case) -> tuple[Forcing, ...]:
 
 
 def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
-    """What `function` of the case gives; a case may be the user's own, and fail in any way."""
+    """The result of a `function` of the case, which may be the user's own and fail in any way."""
     try:
         return function(*arguments)
     except (InputError, MemoryError):
@@ -119,7 +119,7 @@ def _asked(case: Case, function: Callable[..., Any], *arguments: object) -> Any:
 
 
 def require_finite_integrals(integrals: dict[str, float], case_name: str) -> None:
-    """Raise `InputError` where a global integral is beyond the numbers, so that no change of it can be told."""
+    """Raise `InputError` if a global integral is not finite, so that its changes cannot be computed."""
     for name, value in integrals.items():
         if not np.isfinite(value):
             raise InputError(

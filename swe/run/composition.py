@@ -1,4 +1,4 @@
-"""From the fields of a case and the options of a run to the model: time step, terms, and what to warn of."""
+"""From the fields of a case and the options of a run to the model: time step, terms and warnings."""
 
 from collections.abc import Iterator, Sequence
 
@@ -25,12 +25,12 @@ def default_time_step(start: CaseFields, options: Options) -> float:
     per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
     if not np.isfinite(per_second):
         raise InputError(f"the waves of {case.name} are too fast for numbers; correct its parameters")
-    # Where nothing moves, under a prescribed wind of zero, any step does.
+    # Where nothing moves, under a prescribed wind of zero, any step will do.
     return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
 
 
 def require_keeping_energy(integrator: str, terms: Sequence[Term]) -> None:
-    """Raise `InputError` where relaxation would undo what terms in the stages do to energy."""
+    """Raise `InputError` if relaxation would undo what terms in the stages do to energy."""
     changing = [term.name for term in terms if "total_energy" in term.changes and not term.after_steps]
     if integrator == "rrk4" and changing:
         raise InputError(f"rrk4 keeps total energy, which the term {changing[0]} changes; take the integrator rk4")
@@ -53,7 +53,7 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
 def warnings_before(
     start: CaseFields, model: ShallowWaterModel, configuration: Configuration, initial_courant_number: float
 ) -> Iterator[str]:
-    """What is likely to go wrong in the course of a run, in sentences."""
+    """What is likely to go wrong during a run, in sentences."""
     time_step = configuration.time_step
     waves = time_step * STABLE_COURANT_NUMBER / max(initial_courant_number, 1e-300)
     damping = min(

@@ -1,4 +1,4 @@
-"""The bar that a run shows: simulated days, days per minute of wall clock, Courant number."""
+"""The progress bar of a run: simulated days, days per minute of wall-clock time, Courant number."""
 
 import time
 from types import TracebackType
@@ -10,7 +10,7 @@ REFRESH_SECONDS = 0.1
 
 
 class ProgressBar:
-    """A context that draws on the terminal's error stream if `visible`, else does nothing."""
+    """A context manager that draws on standard error if `visible`, and otherwise does nothing."""
 
     def __init__(self, first_day: float, last_day: float, visible: bool) -> None:
         self._progress = Progress(

@@ -34,9 +34,9 @@ class StopRequest:
 
 @contextmanager
 def stop_requests() -> Iterator[StopRequest]:
-    """Note Ctrl-C and SIGTERM in the course of the context, where this is the main thread; nothing elsewhere.
+    """Note Ctrl-C and SIGTERM within the context if this is the main thread; do nothing in any other.
 
-    Signals that the program ignores stay ignored. One that was noted and not heeded is passed on at the end.
+    Signals that the program ignores stay ignored. One that was noted but not heeded is passed on at the end.
     """
     request = StopRequest()
     if threading.current_thread() is not threading.main_thread():

@@ -45,10 +45,10 @@ from swe.stepping.time_stepping import RungeKutta
 from swe.tiles.fused import FusedRungeKutta, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
-"""Cells times steps between two looks at signals and the bar of progress: some twentieth of a second."""
+"""Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
 
 MOST_EVENTS = 1e9
-"""Steps, snapshots or rows of a run; more of them take years."""
+"""Most steps, snapshots or rows of a run; more of them would take years."""
 
 
 class Simulation:
@@ -61,47 +61,46 @@ class Simulation:
     case
         A test case, such as those of `cases`.
     output
-        Run directory to create; nothing is written if None. Refused where it holds a run already, unless
-        `overwrite` or `resume`.
+        Run directory to create; nothing is written if None. Refused if it already holds a run, unless `overwrite` or
+        `resume`.
     time_step
         Seconds; by default the largest up to `DEFAULT_COURANT_NUMBER` that divides the shorter output interval.
-        Steps are shortened where they would pass an output time. Warns with `SetupWarning` where it is unstable.
+        Steps are shortened where they would pass an output time. Warns with `SetupWarning` if it is unstable.
     snapshot_interval, diagnostics_interval
         Seconds between snapshots and between rows of diagnostics.
     checkpoint_interval
         Simulated seconds between checkpoints; results do not depend on it.
     sampling
-        "point" where initial thickness and topography are those of the cells' centres, "mean" where they are means
-        over the cells.
+        "point" takes initial thickness and topography at cell centres, "mean" takes their means over the cells.
     integrator
-        "rk4", the classical method, or "rrk4", whose steps are relaxed to keep total energy (`Relaxation`).
+        "rk4", the classical method, or "rrk4", whose steps are relaxed to conserve total energy (`Relaxation`).
     anticipation
-        Part of the time step by which potential vorticity is anticipated, 0.5 in the literature, so that potential
+        Fraction of the time step by which potential vorticity is anticipated, 0.5 in the literature, so that potential
         enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
     dissipation
         Coefficient of the biharmonic dissipation, m4/s, applied after each step.
     fields
-        Names of the fields that snapshots hold, of `swe.diagnostics.outputs.FIELDS`; all of them by default.
+        Names of the fields in snapshots, from `swe.diagnostics.outputs.FIELDS`; all of them by default.
     overwrite
-        Whether to replace a run that the directory holds.
+        Whether to replace a run in the directory.
     resume
-        Whether to go on from the last checkpoint of the run that the directory holds, to the files that the run would
-        have left without a stop, bit for bit; from the start where there is no checkpoint.
+        Whether to resume the run in the directory from its last checkpoint, or from the start if it has none. The files
+        are then those of an uninterrupted run, bit for bit.
 
     Attributes
     ----------
     model, method, stepper, recorder
         The equations with their terms, the Runge-Kutta method, what takes it from one output to the next, and what
-        writes; each is made from the one before, the model from the fields of the case.
+        writes output. The model is built from the fields of the case, and each of the others from the one before.
     loops
-        "fused", or "plain" where the model has a term that the fused loops over tiles do not compute: several times
+        "fused", or "plain" if the model has a term that the fused loops over tiles do not compute: several times
         slower, with the same results to round-off.
 
     Raises
     ------
     InputError
-        Where an option is out of range, the case gives no sound fields, the initial thickness is not positive, the
-        directory cannot be used, or the run to go on with was made with another mesh, case or option.
+        If an option is out of range, the fields of the case are invalid, the initial thickness is not positive, the
+        directory cannot be used, or the run to resume was made with another mesh, case or option.
     """
 
     def __init__(
@@ -169,13 +168,13 @@ class Simulation:
         )
 
     def set_back_to(self, state: State, time: float, steps: int) -> None:
-        """Go on from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""
+        """Continue from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""
         self.state.thickness[:] = state.thickness
         self.state.normal_velocity[:] = state.normal_velocity
         self.time, self.steps = time, steps
 
     def set_back_to_start(self) -> None:
-        """Go on from the initial state."""
+        """Continue from the initial state."""
         start, sampling = self._start, self.configuration.sampling
         self.set_back_to(initial_state(self.case, self.mesh, sampling, start.kites_matter), 0.0, 0)
         self.courant_number = self.initial_courant_number
@@ -206,18 +205,18 @@ class Simulation:
         callbacks: Iterable[Callback] = (),
         stop_when: Callable[["Simulation"], bool] | None = None,
     ) -> None:
-        """Integrate for so many `days`, or `until` so many days after the start, writing output on the way.
+        """Integrate for another `days` days, or `until` a day counted from the start, writing output on the way.
 
-        A run that goes on (`resume`) may have another end than before: it then leaves the files of one run to that
-        day, bit for bit, for which it may first go back to the last time that both have in common.
+        A resumed run (`resume`) may have a different end from before. Its files are then those of a single run to that
+        day, bit for bit; for this it may first go back to the last time that both runs share.
 
-        The `callbacks` are called on their schedules, and `stop_when` is asked after each step: once it is true, the
-        run ends there, with a checkpoint from which it can go on. Neither changes the steps that are taken.
+        The `callbacks` are called on their schedules, and `stop_when` is evaluated after each step: once it is true,
+        the run ends there, with a checkpoint from which it can resume. Neither changes the steps that are taken.
 
-        Raises `InputError` where the end is before now, `RunError` where the state ceases to be finite or the thickness
-        to be positive, or where output cannot be written, and `RunStopped` between two steps some twentieth of a second
-        after Ctrl-C or SIGTERM; a second one interrupts at once. What was written before stays. After all of these but
-        `RunStopped`, what the object holds is no state to go on from.
+        Raises `InputError` if the end is before the present time, `RunError` if the state ceases to be finite or the
+        thickness to be positive, or if output cannot be written, and `RunStopped` between two steps about a twentieth
+        of a second after Ctrl-C or SIGTERM; a second signal interrupts at once. Output already written stays. After any
+        of these but `RunStopped`, the object no longer holds a state from which a run can continue.
         """
         last_day = self._last_day(days, until)
         end = last_day * SECONDS_PER_DAY
@@ -250,7 +249,7 @@ class Simulation:
             self._broken = False
 
     def _last_day(self, days: float | None, until: float | None) -> float:
-        """Days after the start at which a run ends that lasts `days` from now, or `until` a day."""
+        """The day, counted from the start, on which a run ends that lasts `days` from now, or `until` a day."""
         if (days is None) == (until is None):
             raise InputError("give the days that the run goes on, run(days=...), or the day of its end, run(until=...)")
         if until is not None:
@@ -258,7 +257,7 @@ class Simulation:
         return self.time / SECONDS_PER_DAY + plain_number("the number of days", days, InputError)
 
     def _described(self, fields: tuple[str, ...]) -> RunDescription:
-        """What the recorder must know of the run, whose snapshots hold `fields`; called before the first step."""
+        """What the recorder must know about the run, whose snapshots hold `fields`; called before the first step."""
         return RunDescription(
             self.case.name,
             self.case.parameters(),
@@ -278,7 +277,7 @@ class Simulation:
         return recorder.recording(days, self.last_shared_time(days), self._now)
 
     def _choose_end(self, recorder: Recorder, days: float) -> None:
-        """Give a run that goes on another end, if it had one: go back to where a run to `days` has been as well."""
+        """If a resumed run had another end, go back to the last state that it shares with a run to `days`."""
         before = recorder.other_end(days)
         if before is None:
             return
@@ -289,7 +288,7 @@ class Simulation:
             self.set_back_to(reached.state, reached.time, reached.steps)
 
     def _require_possible_counts(self, seconds: float) -> None:
-        """Raise `InputError` where the run would never come to its end."""
+        """Raise `InputError` if the run would never come to its end."""
         configuration = self.configuration
         for what, interval in (
             ("snapshot interval", configuration.snapshot_interval),
@@ -304,7 +303,7 @@ class Simulation:
                 )
 
     def last_shared_time(self, days: float) -> float:
-        """The last time, seconds, at which a run to `days` has done what any longer one has done (`last_shared`)."""
+        """The last time, seconds, up to which a run to `days` does the same as any longer one (`last_shared`)."""
         return last_shared(self._schedules(days * SECONDS_PER_DAY))
 
     def _schedules(self, end: float) -> tuple[Schedule, Schedule]:
@@ -345,13 +344,13 @@ class Simulation:
                 )
 
     def _end_early(self, reason: str) -> None:
-        """Keep where the run stands, so that it can go on from there."""
+        """Write a checkpoint where the run stands, so that it can resume from there."""
         if self.recorder is not None:
             self.recorder.checkpoint(self._now())
             self.recorder.early_end = reason
 
     def _advance(self, event: float, most: int) -> None:
-        """Take some steps towards `event`, seconds, which none passes, and no more than `most`."""
+        """Take some steps towards `event`, seconds, without passing it, and no more than `most`."""
         most = max(1, min(most, CELL_STEPS_PER_CALL // self.mesh.n_cells))
         before, start = self.state.copy() if self._start.kites_matter else None, self.time
         self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
@@ -367,7 +366,7 @@ class Simulation:
             )
 
     def _explain_by_vertices(self, before: State, time: float, event: float, steps: int) -> None:
-        """Take the last `steps` steps again from `before`; raise `RunError` where a vertex goes wrong first."""
+        """Repeat the last `steps` steps from `before`; raise `RunError` if a vertex goes wrong first."""
         for step in range(self.steps - steps + 1, self.steps + 1):
             time, _ = self.stepper.advance(before, time, event, self.configuration.time_step, 1)
             problem = problem_at_vertices(self.model.closed, before.thickness)

@@ -1,4 +1,4 @@
-"""What looks at a run from outside while it goes: callbacks on schedules, and a condition that ends it."""
+"""What watches a run from outside: callbacks on schedules, and a condition that ends it."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from swe.stepping.schedule import ROUNDING
 class Callback:
     """Calls `function` with the simulation after the first step that reaches each whole multiple of `interval` seconds.
 
-    The function may look at everything and change nothing. Raises `InputError` where the interval is not positive.
+    The function may read everything but must change nothing. Raises `InputError` if the interval is not positive.
     """
 
     function: Callable[[Any], object]
@@ -52,7 +52,7 @@ class Watch:
         self._stop_when = stop_when
 
     def most_steps(self, time: float, time_step: float) -> int:
-        """Steps that may be taken at once, so that none which somebody waits for is passed unseen."""
+        """Steps that may be taken at once without missing one that a callback or the stop condition must see."""
         if self._stop_when is not None:
             return 1
         waits = (
@@ -62,7 +62,7 @@ class Watch:
         return max(1, int(min(waits, default=2.0**31)))
 
     def call(self, time: float) -> None:
-        """Call those whose time has come."""
+        """Call the callbacks that are due."""
         for number, callback in enumerate(self._callbacks):
             count = self._count(callback, time)
             if count > self._called[number]:
@@ -70,7 +70,7 @@ class Watch:
                 callback.function(self._simulation)
 
     def is_over(self) -> bool:
-        """Whether the condition holds that ends the run."""
+        """Whether the stop condition holds."""
         return self._stop_when is not None and bool(self._stop_when(self._simulation))
 
     @property
