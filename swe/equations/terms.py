@@ -83,7 +83,7 @@ class Forcing(Term):
         if not (isinstance(name, str) and name.isidentifier() and name.isascii()):
             raise InputError(f"the name of a term is {name!r}; it must be made of letters, digits and underscores")
         if name in RESERVED:
-            raise InputError(f"a term cannot be named '{name}', as a part of every budget is; choose another name")
+            raise InputError(f"a term cannot be named '{name}', which every budget uses already; choose another name")
         if not (callable(acceleration) or callable(source)):
             raise InputError(f"the term {name} does nothing; give it a function, acceleration= or source=")
         self.name = name

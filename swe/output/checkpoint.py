@@ -82,7 +82,7 @@ def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float =
             try:
                 checkpoint = _read(path, n_cells, n_edges)
             except Exception as error:  # of any kind, as any byte may be corrupt
-                warnings.warn(f"{path} is damaged ({error}) and left aside", SetupWarning, stacklevel=2)
+                warnings.warn(f"{path} is damaged ({error}) and ignored", SetupWarning, stacklevel=2)
                 continue
             any_whole = True
             if checkpoint.time <= latest:
@@ -131,7 +131,7 @@ def _read(path: Path, n_cells: int, n_edges: int) -> Checkpoint:
     if not state.thickness.min() > 0.0:
         raise ValueError("its thickness is not positive")
     if counts.shape != (len(COUNTS),) or counts.dtype != np.int64 or counts.min() < 1:
-        raise ValueError("its counts are no positive whole numbers")
+        raise ValueError("its counts are not positive whole numbers")
     if time.shape != () or time.dtype != np.float64 or not 0.0 < time < np.inf:
         raise ValueError("its time is not a positive number of seconds")
     return Checkpoint(state, float(time), **dict(zip(COUNTS, counts.tolist(), strict=True)))

@@ -234,9 +234,11 @@ def read_record(directory: Path) -> dict[str, object] | None:
     except (FileNotFoundError, NotADirectoryError):
         return None
     except TypeError as error:
-        raise InputError(f"{path} is no record of a run; remove it or choose another directory") from error
+        raise InputError(f"{path} is not the record of a run; remove it or choose another directory") from error
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError(f"{path} is no record of a run ({error}); remove it or choose another directory") from error
+        raise InputError(
+            f"{path} is not the record of a run ({error}); remove it or choose another directory"
+        ) from error
 
 
 def load_record(directory: Path) -> dict[str, Any]:

@@ -282,13 +282,13 @@ def run_to_go_on_with(directory: Path, overwrite: bool, resume: bool) -> dict[st
     """
     existing = next(path for path in (directory, *directory.absolute().parents) if path.exists())
     if not existing.is_dir() or not os.access(existing, os.W_OK | os.X_OK):
-        raise InputError(f"{directory} cannot be used as a run directory: {existing} is no folder one can write to")
+        raise InputError(f"{directory} cannot be used as a run directory: {existing} is not a writable folder")
     if overwrite and resume:
-        raise InputError("a run is either replaced or gone on with, not both; leave out --force or --resume")
+        raise InputError("a run is either replaced or resumed, not both; leave out --force or --resume")
     present = [path for name in (*FILES, PATTERN) for path in directory.glob(name)]
     for path in present:
         if not path.is_file():
-            raise InputError(f"{path} is no file, but a run has a file of that name; choose another directory")
+            raise InputError(f"{path} is not a file, but a run has a file of that name; choose another directory")
     if overwrite:
         return None
     before = read_record(directory)
@@ -320,6 +320,6 @@ def _number_in(record: dict[str, object], name: str, directory: Path) -> float:
     value = record.get(name)
     if not isinstance(value, int | float) or not 0.0 <= value < float("inf"):
         raise InputError(
-            f"{directory / RECORD_FILE} does not tell the {name.replace('_', ' ')} of the run; start anew (--force)"
+            f"{directory / RECORD_FILE} does not give the {name.replace('_', ' ')} of the run; start anew (--force)"
         )
     return float(value)

@@ -24,7 +24,7 @@ def default_time_step(start: CaseFields, options: Options) -> float:
     case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
     per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
     if not np.isfinite(per_second):
-        raise InputError(f"the waves of {case.name} are too fast for numbers; correct its parameters")
+        raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
     # Where nothing moves, under a prescribed wind of zero, any step will do.
     return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
 

@@ -117,7 +117,9 @@ def build_tiles(
     most = LocalSizes(*np.max([list(piece.sizes) for piece in pieces], axis=0).tolist())
     if most.edges > MIRROR:
         if cells_per_tile == 1:
-            raise InputError(f"a cell of the mesh has {most.edges} edges round it and its neighbours; {MIRROR} will do")
+            raise InputError(
+                f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
+            )
         return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)

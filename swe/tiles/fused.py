@@ -32,7 +32,7 @@ class FusedRungeKutta:
     def __init__(self, model: ShallowWaterModel) -> None:
         reason = why_not_fused(model)
         if reason:
-            raise InputError(f"{reason}, which the fused method has not; take RungeKutta(model.tendency, ...)")
+            raise InputError(f"{reason}, which the fused method lacks; take RungeKutta(model.tendency, ...)")
         self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity)
         self.model = model
         self._scratch = _scratch(self.tiles)

@@ -55,7 +55,7 @@ def test_what_cannot_go_on_is_refused_before_a_mesh_is_made(trisk, tmp_path: Pat
     begin = time.monotonic()
     for more, words in (
         ((), "holds a run already"),
-        (("--resume", "--force"), "either replaced or gone on with"),
+        (("--resume", "--force"), "either replaced or resumed"),
         (("--resume",), "mesh.nc has 42 cells, not 1000002"),
     ):
         code, _, err = trisk(*million, *more)

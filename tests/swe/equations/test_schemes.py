@@ -84,7 +84,7 @@ def test_a_scheme_of_ones_own_runs_by_plain_loops(icosahedral_mesh: VoronoiMesh)
     simulation = Simulation(icosahedral_mesh, Williamson5())
     before, start = simulation.model, simulation.state.copy()
     model = ShallowWaterModel(before.mesh, before.topography, before.coriolis, before.gravity, scheme=UNEVEN)
-    with pytest.raises(InputError, match="the scheme is uneven, which the fused method has not; take RungeKutta"):
+    with pytest.raises(InputError, match="the scheme is uneven, which the fused method lacks; take RungeKutta"):
         FusedRungeKutta(model)
     RungeKutta(model.tendency, start).advance(start, 300.0, 100)
     first = measure_invariants(model, simulation.state, model.diagnose(simulation.state))

@@ -101,5 +101,5 @@ def test_the_fused_method_takes_no_model_that_anticipates(icosahedral_mesh: Voro
     plain = Simulation(icosahedral_mesh, Williamson5()).model
     terms = [Anticipation(plain.mesh, 1e4), BiharmonicDissipation(plain.mesh, 1e12)]
     model = ShallowWaterModel(plain.mesh, plain.topography, plain.coriolis, plain.gravity, terms=terms)
-    with pytest.raises(InputError, match="the tendency has the term anticipation, which the fused method has not"):
+    with pytest.raises(InputError, match="the tendency has the term anticipation, which the fused method lacks"):
         FusedRungeKutta(model)

@@ -149,7 +149,7 @@ def test_a_resumed_run_asks_for_the_same_forcing(small_mesh: VoronoiMesh, tmp_pa
         (("wind",), "the term wind does nothing; give it a function, acceleration= or source="),
         (("wind stress", wind), "the name of a term is 'wind stress'; it must be made of letters, digits and"),
         ((3, wind), "the name of a term is 3;"),
-        (("coriolis", wind), "a term cannot be named 'coriolis', as a part of every budget is; choose another name"),
+        (("coriolis", wind), "a term cannot be named 'coriolis', which every budget uses already; choose another name"),
     ],
 )
 def test_terms_that_are_refused(arguments: tuple[object, ...], message: str) -> None:

@@ -70,7 +70,7 @@ def test_a_damaged_checkpoint_gives_way_to_the_one_before(tmp_path: Path, damage
     if damage is None:
         data[300] ^= 1
     path.write_bytes(data if damage is None else damage(data))
-    with pytest.warns(SetupWarning, match=r"checkpoint.0000000002.npz is damaged .* and left aside"):
+    with pytest.warns(SetupWarning, match=r"checkpoint.0000000002.npz is damaged .* and ignored"):
         found = last_checkpoint(tmp_path, 50, 70)
     assert found is not None
     assert found.steps == 1
@@ -229,10 +229,10 @@ def test_other_versions_are_warned_of(icosahedral_mesh: VoronoiMesh, tmp_path: P
     with pytest.warns(SetupWarning, match="begun with other versions of packages"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
     (tmp_path / "run.json").write_text("[1]")
-    with pytest.raises(InputError, match=r"run\.json is no record of a run; remove it"):
+    with pytest.raises(InputError, match=r"run\.json is not the record of a run; remove it"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path, resume=True)
     (tmp_path / "run.json").write_text('{"case": ')
-    with pytest.raises(InputError, match=r"run\.json is no record of a run"):
+    with pytest.raises(InputError, match=r"run\.json is not the record of a run"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path)
 
 
@@ -279,7 +279,7 @@ def test_what_is_no_run_is_not_written_over(icosahedral_mesh: VoronoiMesh, tmp_p
     (tmp_path / "other").mkdir()
     (tmp_path / "other" / "history.nc").mkdir()
     (tmp_path / "other" / ".notes.part").write_text("of the user")
-    with pytest.raises(InputError, match="is no file, but a run has a file of that name"):
+    with pytest.raises(InputError, match="is not a file, but a run has a file of that name"):
         Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other", overwrite=True)
     (tmp_path / "other" / "history.nc").rmdir()
     Simulation(icosahedral_mesh, Williamson5(), tmp_path / "other").run(until=0.1, progress=False)

@@ -193,7 +193,9 @@ def test_tiles_shrink_until_they_fit(icosahedral_mesh: VoronoiMesh, monkeypatch:
     assert smaller.n_tiles > 3
     assert smaller.most.edges <= 700
     monkeypatch.setattr(tiles, "MIRROR", 5)
-    with pytest.raises(InputError, match=r"a cell of the mesh has .* edges round it and its neighbours; 5 will do"):
+    with pytest.raises(
+        InputError, match=r"a cell of the mesh has .* edges around it and its neighbours; the limit is 5"
+    ):
         build_tiles(*arguments)
 
 
