@@ -37,6 +37,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return where
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", range(1, len(programs())))
 def test_the_other_programs_run(folder: Path, number: int) -> None:
     program = programs()[number]
@@ -47,6 +48,7 @@ def test_the_other_programs_run(folder: Path, number: int) -> None:
     assert done.returncode == 0, done.stderr
 
 
+@pytest.mark.slow
 def test_the_budget_of_the_wind_is_in_the_diagnostics(folder: Path) -> None:
     """The case of the user's own, in fifteen lines at most, leaves the rates of its term."""
     (program,) = [program for program in programs() if "Forcing" in program]

@@ -36,10 +36,15 @@ def test_mollweide_maps_the_sphere_to_its_ellipse_keeping_areas() -> None:
     np.testing.assert_allclose(2 * angle + np.sin(2 * angle), np.pi * np.sin(lat), atol=1e-12)
 
 
-@pytest.fixture(params=["edge at the pole", "vertex at the pole", "cell at the pole", "random"])
-def turned_mesh(request: pytest.FixtureRequest, any_mesh: VoronoiMesh) -> VoronoiMesh:
+@pytest.fixture(
+    scope="module", params=["edge at the pole", "vertex at the pole", "cell at the pole", "large cells", "random"]
+)
+def turned_mesh(request: pytest.FixtureRequest) -> VoronoiMesh:
     if request.param == "random":
-        return any_mesh
+        return mesh_from_points(np.random.default_rng(1).normal(size=(500, 3)))
+    if request.param == "large cells":
+        grid = np.stack(np.meshgrid(*3 * [[-1.0, 0.0, 1.0]]), axis=-1).reshape(-1, 3)
+        return mesh_from_points(grid[np.abs(grid).any(axis=1)])
     points = icosahedral_points(3)
     unturned = mesh_from_points(points)
     target = {
