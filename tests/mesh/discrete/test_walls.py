@@ -1,5 +1,7 @@
 """Parts of spheres: nothing flows through the cut, and the identities of the discrete calculus hold on what is left."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,15 @@ def test_no_index_of_a_closed_mesh_is_missing(part: VoronoiMesh) -> None:
         assert getattr(closed, name).min() >= 0, name
         present = getattr(part, name) >= 0
         np.testing.assert_array_equal(getattr(closed, name)[present], getattr(part, name)[present])
+
+
+def test_kites_of_missing_cells_have_no_area(part: VoronoiMesh) -> None:
+    """Whatever a mesh says of them."""
+    filled = replace(part, kite_areas_on_vertex=part.kite_areas_on_vertex + 1.0)
+    kites = closed_mesh(filled).kite_areas_on_vertex
+    missing = part.cells_on_vertex < 0
+    assert np.all(kites[missing] == 0.0)
+    np.testing.assert_array_equal(kites[~missing], filled.kite_areas_on_vertex[~missing])
 
 
 def test_operators_of_a_part(part: VoronoiMesh) -> None:

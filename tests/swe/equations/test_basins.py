@@ -57,6 +57,18 @@ def test_three_forms_of_the_tendency_agree(
     assert size_u > 1e-4
 
 
+def test_nothing_leaks_whatever_the_velocity_at_walls(part: VoronoiMesh) -> None:
+    model, state = random_setting(part)
+    leaking = state.copy()
+    leaking.normal_velocity[wall_edges(part)] = 25.0
+    method = FusedRungeKutta(model)
+    for tendency_of in (model.tendency, method.tendency):
+        tight, found = state.empty_like(), state.empty_like()
+        tendency_of(state, tight)
+        tendency_of(leaking, found)
+        np.testing.assert_array_equal(found.thickness, tight.thickness)
+
+
 def test_integrals_are_kept(part: VoronoiMesh) -> None:
     """What the tendency does to mass, energy and absolute vorticity vanishes, relative to what cancels."""
     model, state = random_setting(part)
