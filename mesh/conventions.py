@@ -108,3 +108,9 @@ MESH_VARIABLES: tuple[MeshVariable, ...] = (
 )
 
 BY_NAME = {variable.name: variable for variable in MESH_VARIABLES}
+
+COORDINATES = {
+    DIMENSIONS[dimension]: " ".join(BY_NAME[f"{angle}_{place}"].file_name for angle in ("lon", "lat"))
+    for place, dimension in (("cell", "n_cells"), ("edge", "n_edges"), ("vertex", "n_vertices"))
+}
+"""Coordinates of what lies on each dimension of a file, as the CF conventions name them."""

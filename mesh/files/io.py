@@ -11,7 +11,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
+from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
 from mesh.density.record import read_generation, write_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
@@ -112,8 +112,7 @@ def _coordinates(variable: MeshVariable) -> dict[str, str]:
     kind, *_ = variable.name.split("_")
     if kind in STANDARD_NAMES:
         return {"standard_name": STANDARD_NAMES[kind]}
-    place = next(place for place, dimension in PLACES.items() if dimension == variable.dimensions[0])
-    return {"coordinates": " ".join(BY_NAME[f"{angle}_{place}"].file_name for angle in ("lon", "lat"))}
+    return {"coordinates": COORDINATES[DIMENSIONS[variable.dimensions[0]]]}
 
 
 def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:

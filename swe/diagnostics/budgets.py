@@ -87,8 +87,10 @@ def measure_rates(
     integral_kernels.bernoulli(state.thickness, model.topography, diagnosis.kinetic_energy, model.gravity, bernoulli)
     transport = _work_of_transport(model, tendency.thickness, bernoulli, q)
     rates["mass_rate_transport"] = transport.mass
+    flux = np.empty(model.mesh.n_edges)
+    model.scheme.flux(model.closed, state.thickness, state.normal_velocity, flux)
     if not model.prescribed_wind:
-        gradient, coriolis = _work_of_forces(model, state, tendency.normal_velocity, bernoulli, q)
+        gradient, coriolis = _work_of_forces(model, flux, tendency.normal_velocity, bernoulli, q)
         rates["total_energy_rate_exchange"] = gradient.total_energy + transport.total_energy
         rates["absolute_vorticity_rate_gradient"] = gradient.absolute_vorticity
         rates["total_energy_rate_coriolis"] = coriolis.total_energy
@@ -97,36 +99,24 @@ def measure_rates(
     for term in model.terms:
         own = model.tendency_of(term, state, time)
         by_source = _work_of_transport(model, own.thickness, bernoulli, q) if own.thickness.any() else _NONE
-        by_force = _work(model, state, q, own.normal_velocity) if own.normal_velocity.any() else _NONE
+        by_force = _work(model, flux, q, own.normal_velocity) if own.normal_velocity.any() else _NONE
         for integral in term.changes:
             source, force = getattr(by_source, integral), getattr(by_force, integral)
             rates[rate_name(integral, term.name)] = source + force
             if not term.after_steps and (integral == "mass" or not model.prescribed_wind):
-                # The term's part in the tendency was taken for transport and Coriolis force above.
-                _take(rates, integral, "source", source)
-                _take(rates, integral, "force", force)
+                # The term's part in the tendency was taken for other causes above.
+                if integral in _SOURCE_TAKEN_FOR:
+                    rates[rate_name(integral, _SOURCE_TAKEN_FOR[integral])] -= source
+                if integral in _FORCE_TAKEN_FOR_CORIOLIS:
+                    rates[rate_name(integral, "coriolis")] -= force
     return rates
 
 
-_TAKEN_FOR = {
-    "source": {
-        "mass": "transport",
-        "total_energy": "exchange",
-        "potential_enstrophy": "coriolis",
-    },
-    "force": {
-        "total_energy": "coriolis",
-        "potential_enstrophy": "coriolis",
-        "absolute_vorticity": "coriolis",
-    },
-}
-"""The cause for which the part of a term is taken in a tendency that is not split into terms."""
+_SOURCE_TAKEN_FOR = {"mass": "transport", "total_energy": "exchange", "potential_enstrophy": "coriolis"}
+"""The cause to which a tendency that is not split into terms attributes a source of thickness."""
 
-
-def _take(rates: dict[str, float], integral: str, part: str, rate: float) -> None:
-    """Subtract the `rate` of a part of a term from the cause that it was taken for."""
-    if rate != 0.0:
-        rates[rate_name(integral, _TAKEN_FOR[part][integral])] -= rate
+_FORCE_TAKEN_FOR_CORIOLIS = ("total_energy", "potential_enstrophy", "absolute_vorticity")
+"""Integrals for which such a tendency attributes an acceleration to the Coriolis force."""
 
 
 def rates_of_time(
@@ -160,10 +150,9 @@ class _Work:
 _NONE = _Work()
 
 
-def _work(model: ShallowWaterModel, state: State, potential_vorticity: Array, acceleration: Array) -> _Work:
-    """What an `acceleration` at edges does to the integrals."""
-    mesh, flux = model.closed, np.empty(model.mesh.n_edges)
-    model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
+def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acceleration: Array) -> _Work:
+    """What an `acceleration` at edges does to the integrals; `flux` is the mass flux there."""
+    mesh = model.closed
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
         integral_kernels.work_of(
@@ -205,12 +194,10 @@ def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bern
 
 
 def _work_of_forces(
-    model: ShallowWaterModel, state: State, acceleration: Array, bernoulli: Array, q: Array
+    model: ShallowWaterModel, flux: Array, acceleration: Array, bernoulli: Array, q: Array
 ) -> tuple[_Work, _Work]:
     """What minus the gradient of the Bernoulli function, and then the rest of the acceleration, do to the integrals."""
     mesh = model.closed
-    flux = np.empty(model.mesh.n_edges)
-    model.scheme.flux(mesh, state.thickness, state.normal_velocity, flux)
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
         integral_kernels.work_of_forces(

@@ -193,12 +193,12 @@ SERIES = series_of()
 """Series of every run; the user's own terms add theirs."""
 
 
-def row_of(now: Evaluation, before: Mapping[str, float] | None) -> dict[str, float]:
-    """The row of the diagnostics that follows the row `before`, with `time`, seconds since the start."""
-    terms = now.model.terms
-    values = {name: series.value(now) for name, series in series_of(terms).items() if series.value is not None}
-    row = {"time": now.time, **values}
-    return {**row, **rates_of_time(row, before, terms)}
+def diagnostics_row(
+    now: Evaluation, series: Mapping[str, Series], before: Mapping[str, float] | None
+) -> dict[str, float]:
+    """The row of these `series` that follows the row `before`, with `time`, seconds since the start."""
+    row = {"time": now.time, **{name: each.value(now) for name, each in series.items() if each.value is not None}}
+    return {**row, **rates_of_time(row, before, now.model.terms)}
 
 
 def chosen_fields(names: Iterable[str] | None) -> tuple[str, ...]:

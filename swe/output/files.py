@@ -16,11 +16,11 @@ import netCDF4
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.conventions import BY_NAME
+from mesh.conventions import BY_NAME, COORDINATES
 from mesh.files.io import mesh_attributes, write_mesh_variables
 from mesh.safe_files import dataset, netcdf_lock, opened_dataset, written_aside
 from swe.diagnostics.budgets import rate_series
-from swe.diagnostics.outputs import FIELDS, SERIES, TOPOGRAPHY, Evaluation, Field, row_of, series_of
+from swe.diagnostics.outputs import FIELDS, SERIES, TOPOGRAPHY, Evaluation, Field, Series, diagnostics_row
 from swe.equations.model import ShallowWaterModel
 from swe.errors import InputError, RunError
 
@@ -44,10 +44,6 @@ TIME_COORDINATE = "Time"
 PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
-COORDINATES = {"nCells": "lonCell latCell", "nEdges": "lonEdge latEdge", "nVertices": "lonVertex latVertex"}
-"""Coordinates of the values at cells, edges and vertices, as the CF conventions require them."""
-
-
 def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], description: Mapping[str, Any]) -> None:
     """Create a history file without snapshots, for `fields`; raise `RunError` if it cannot be written.
 
@@ -58,9 +54,6 @@ def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], 
         identity = mesh_attributes(mesh, "snapshots of a shallow-water run", description["mesh_hash"])
         file.setncatts({**identity, **_attributes(model, description)})
         write_mesh_variables(file, mesh, GEOMETRY)
-        for names in COORDINATES.values():
-            longitude, latitude = names.split()
-            file[longitude].standard_name, file[latitude].standard_name = "longitude", "latitude"
         _define_time(file)
         _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
         file["topography"][:] = model.topography
@@ -68,13 +61,15 @@ def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], 
             _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
 
 
-def create_diagnostics(path: Path, model: ShallowWaterModel, description: Mapping[str, Any]) -> None:
-    """Create a diagnostics file without rows; raise `RunError` if it cannot be written."""
+def create_diagnostics(
+    path: Path, model: ShallowWaterModel, series: Mapping[str, Series], description: Mapping[str, Any]
+) -> None:
+    """Create a diagnostics file without rows, for `series`; raise `RunError` if it cannot be written."""
     with _new_file(path) as file:
         file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(model, description)})
         _define_time(file)
-        for name, series in series_of(model.terms).items():
-            _define(file, name, ("Time",), series.units, series.meaning)
+        for name, each in series.items():
+            _define(file, name, ("Time",), each.units, each.meaning)
 
 
 def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dict[str, object]:
@@ -192,21 +187,21 @@ class HistoryFile(_TimeFile):
 
 
 class DiagnosticsFile(_TimeFile):
-    """Time series of the given `names`; rows wait up to a second and are written together."""
+    """The given `series` by name; rows wait up to a second and are written together."""
 
-    def __init__(self, path: Path, names: Iterable[str] = SERIES, rows: int | None = None, size: int = 0) -> None:
-        names = tuple(names)
-        super().__init__(path, names, rows, size)
+    def __init__(self, path: Path, series: Mapping[str, Series], rows: int | None = None, size: int = 0) -> None:
+        super().__init__(path, series, rows, size)
+        self._series = series
         self._waiting: list[dict[str, float]] = []
         self._written = clock.monotonic()
         self._last: dict[str, float] | None = None
         if self.rows > 0:
             with netcdf_lock:
-                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *names)}
+                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *series)}
 
     def append(self, now: Evaluation) -> None:
         """Add the row for a state."""
-        self._last = row_of(now, self._last)
+        self._last = diagnostics_row(now, self._series, self._last)
         self._waiting.append(self._last)
         if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()

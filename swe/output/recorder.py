@@ -161,7 +161,7 @@ class Recorder:
             (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that a resumed run finds no mesh of another run
             self._write_status(moment, "running")
             create_history(history, run.model, run.fields, self._description)
-            create_diagnostics(diagnostics, run.model, self._description)
+            create_diagnostics(diagnostics, run.model, series, self._description)
         if reached is None:
             self._history = HistoryFile(history, run.fields)
             self._diagnostics = DiagnosticsFile(diagnostics, series)

@@ -32,20 +32,21 @@ UNFOLDED = (0.0, 0.0)
 """Folds that leave the terms as they are, for a first pass that finds the largest one."""
 
 
-options: dict[str, Any] = {
-    "error_model": "numpy",
-    "fastmath": False,
-    "forceinline": True,
-    "no_cpython_wrapper": True,
-    "no_cfunc_wrapper": True,
-}
+options: dict[str, Any] = {"error_model": "numpy", "fastmath": False, "forceinline": True}
+
+
+@numba.njit(**options)
+def _fold(term: float, coarse: float, fine: float) -> tuple[float, float]:
+    """Coarse and fine part of a `term`."""
+    part = (term + coarse) - coarse
+    return part, ((term - part) + fine) - fine
 
 
 @numba.njit(**options)
 def add(total: Folded, term: float, coarse: float, fine: float) -> Folded:
     """`total` with one more `term`; `coarse` and `fine` are those of `folds`, or `UNFOLDED`."""
-    part = (term + coarse) - coarse
-    return total[0] + part, total[1] + (((term - part) + fine) - fine), max(total[2], abs(term))
+    part, rest = _fold(term, coarse, fine)
+    return total[0] + part, total[1] + rest, max(total[2], abs(term))
 
 
 @numba.njit(**{**options, "fastmath": {"reassoc"}})
@@ -64,9 +65,7 @@ def add_all(total: Array, terms: Array, count: int, coarse: float, fine: float, 
     The terms are overwritten, and so is `spare`, of the same size.
     """
     for i in range(count):
-        part = (terms[i] + coarse) - coarse
-        spare[i] = ((terms[i] - part) + fine) - fine
-        terms[i] = part
+        terms[i], spare[i] = _fold(terms[i], coarse, fine)
     total[0] += _sum_of_parts(terms, count)
     total[1] += _sum_of_parts(spare, count)
 

@@ -7,29 +7,16 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, build_operators
 from mesh.discrete.walls import closed_mesh, wall_edges
-from swe import ShallowWaterModel, Simulation, State
+from swe import Simulation
 from swe.diagnostics.budgets import measure_rates
 from swe.equations.anticipation import Anticipation
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.tendency import tendency
-from swe.equations.terms import Term
 from swe.stepping.time_stepping import RungeKutta
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
 from tests.cut_mesh import without_cap, without_cells
-
-RADIUS = 6.4e6
-
-
-def random_setting(mesh: VoronoiMesh, *terms: Term) -> tuple[ShallowWaterModel, State]:
-    """Random fields, at rest at walls."""
-    random = np.random.default_rng(8)
-    scaled = mesh.scaled(RADIUS)
-    topography, coriolis = random.uniform(0.0, 500.0, mesh.n_cells), random.uniform(-1e-4, 1e-4, mesh.n_vertices)
-    model = ShallowWaterModel(scaled, topography, coriolis, 9.8, terms=terms)
-    velocity = random.uniform(-30.0, 30.0, mesh.n_edges)
-    velocity[wall_edges(mesh)] = 0.0
-    return model, State(random.uniform(900.0, 1100.0, mesh.n_cells), velocity)
+from tests.swe.random_model import RADIUS, random_model
 
 
 @pytest.fixture
@@ -43,7 +30,7 @@ def test_three_forms_of_the_tendency_agree(
 ) -> None:
     build = cutting.build_tiles
     monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments: build(*arguments, cells_per_tile))
-    model, state = random_setting(part)
+    model, state = random_model(part, seed=8)
     equation = tendency(state, build_operators(model.mesh), model.topography, model.coriolis, model.gravity)
     plain, fused = state.empty_like(), state.empty_like()
     model.tendency(state, plain)
@@ -58,7 +45,7 @@ def test_three_forms_of_the_tendency_agree(
 
 
 def test_nothing_leaks_whatever_the_velocity_at_walls(part: VoronoiMesh) -> None:
-    model, state = random_setting(part)
+    model, state = random_model(part, seed=8)
     leaking = state.copy()
     leaking.normal_velocity[wall_edges(part)] = 25.0
     method = FusedRungeKutta(model)
@@ -71,7 +58,7 @@ def test_nothing_leaks_whatever_the_velocity_at_walls(part: VoronoiMesh) -> None
 
 def test_integrals_are_kept(part: VoronoiMesh) -> None:
     """What the tendency does to mass, energy and absolute vorticity vanishes, relative to what cancels."""
-    model, state = random_setting(part)
+    model, state = random_model(part, seed=8)
     mesh, diagnosis, slope = model.mesh, model.diagnose(state), state.empty_like()
     FusedRungeKutta(model).tendency(state, slope)
     flux = model.closed.dv_edge * state.thickness[model.closed.cells_on_edge].mean(axis=1) * state.normal_velocity
@@ -92,7 +79,7 @@ def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
         pytest.skip("gradients along edges of no length have no meaning")
     scaled = part.scaled(RADIUS)
     terms = (Anticipation(closed_mesh(scaled), 100.0), BiharmonicDissipation(scaled, 1e12))
-    model, state = random_setting(part, *terms)
+    model, state = random_model(part, *terms, seed=8)
     for term in terms:
         found = model.tendency_of(term, state)
         assert np.isfinite(found.normal_velocity).all()
@@ -126,7 +113,7 @@ def test_a_run_in_a_basin(larger_mesh: VoronoiMesh, options: dict[str, object]) 
 
 
 def test_fused_and_plain_steps_agree(larger_mesh: VoronoiMesh) -> None:
-    model, state = random_setting(without_cap(larger_mesh))
+    model, state = random_model(without_cap(larger_mesh), seed=8)
     plain, fused = state.copy(), state.copy()
     RungeKutta(model.tendency, plain).advance(plain, 20.0, 3)
     for threads in (1, 2):
