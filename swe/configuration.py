@@ -19,7 +19,10 @@ DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
 Integrator = Literal["rk4", "rrk4"]
 """Classical Runge-Kutta, or the same with relaxation, which conserves total energy to round-off."""
 
-CHOICES = {"sampling": get_args(Sampling), "integrator": get_args(Integrator)}
+SchemeName = Literal["ringler2010", "consistent"]
+"""Those of `swe.run.composition.SCHEMES`."""
+
+CHOICES = {"sampling": get_args(Sampling), "integrator": get_args(Integrator), "scheme": get_args(SchemeName)}
 """Options whose values are words."""
 
 
@@ -34,6 +37,7 @@ class Configuration:
     integrator: Integrator
     anticipation: float
     dissipation: float
+    scheme: SchemeName
 
 
 @dataclass(frozen=True)
@@ -51,6 +55,7 @@ class Options:
     integrator: Integrator = "rk4"
     anticipation: float = 0.0
     dissipation: float = 0.0
+    scheme: SchemeName = "ringler2010"
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -97,4 +102,5 @@ class Options:
             self.integrator,
             self.anticipation,
             self.dissipation,
+            self.scheme,
         )

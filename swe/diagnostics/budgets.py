@@ -88,7 +88,7 @@ def measure_rates(
     transport = _work_of_transport(model, tendency.thickness, bernoulli, q)
     rates["mass_rate_transport"] = transport.mass
     flux = np.empty(model.mesh.n_edges)
-    model.scheme.flux(model.closed, state.thickness, state.normal_velocity, flux)
+    model.scheme.flux(state.thickness, state.normal_velocity, flux)
     if not model.prescribed_wind:
         gradient, coriolis = _work_of_forces(model, flux, tendency.normal_velocity, bernoulli, q)
         rates["total_energy_rate_exchange"] = gradient.total_energy + transport.total_energy

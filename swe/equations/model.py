@@ -11,7 +11,7 @@ from mesh.arrays import Array, Index
 from mesh.discrete.walls import closed_mesh, wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
-from swe.equations.schemes import RINGLER2010, Scheme
+from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.terms import Term
 from swe.errors import InputError
 from swe.parallel.processes import ONE_PROCESS, Processes
@@ -87,7 +87,7 @@ class ShallowWaterModel:
         coriolis: Array,
         gravity: float,
         prescribed_wind: bool = False,
-        scheme: Scheme = RINGLER2010,
+        scheme: type[Scheme] = Ringler2010,
         terms: Sequence[Term] = (),
         processes: Processes = ONE_PROCESS,
     ) -> None:
@@ -104,7 +104,7 @@ class ShallowWaterModel:
         self.coriolis = coriolis
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
-        self.scheme = scheme
+        self.scheme = scheme(mesh)
         self.terms = tuple(terms)
         self.processes = processes
         self.closed = closed_mesh(mesh)
@@ -157,7 +157,7 @@ class ShallowWaterModel:
         q_edge, nothing = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells)
         term.change_vorticity(state, self._potential_vorticity, q_edge)
         if q_edge.any():
-            self.scheme.flux(self.closed, state.thickness, state.normal_velocity, self._thickness_flux)
+            self.scheme.flux(state.thickness, state.normal_velocity, self._thickness_flux)
             self._update_velocity(nothing, nothing, nothing, q_edge, 0.0, result.normal_velocity)
         self._add(term, state, time, result)
         return result
@@ -173,7 +173,7 @@ class ShallowWaterModel:
 
     def _update_thickness_tendency(self, state: State, result: State) -> None:
         mesh, F = self.closed, self._thickness_flux
-        self.scheme.flux(mesh, state.thickness, state.normal_velocity, F)
+        self.scheme.flux(state.thickness, state.normal_velocity, F)
         kernels.thickness_tendency(
             F,
             mesh.n_edges_on_cell,
@@ -251,7 +251,7 @@ class ShallowWaterModel:
         )
 
     def _update_kinetic_energy(self, state: State) -> None:
-        self.scheme.kinetic_energy(self.closed, state.normal_velocity, self._kinetic_energy)
+        self.scheme.kinetic_energy(state.normal_velocity, self._kinetic_energy)
 
 
 def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_wind: bool, time_step: float) -> float:

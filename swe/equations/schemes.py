@@ -2,45 +2,59 @@
 
 With E = sum_i A_i (h_i K_i + g h_i (h_i/2 + b_i)), the bracket that all schemes share (continuity, Coriolis flux and
 gradient, see `swe.equations.model`) conserves E for any K that is a quadratic form in u, provided that the flux is its
-companion, F_e = 1/(l_e d_e) dE/du_e.
+companion, F_e = 1/(l_e d_e) dE/du_e. `docs/scheme.md` derives this.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from typing import ClassVar
 
 from mesh.arrays import Array
+from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
 
 
-@dataclass(frozen=True)
-class Scheme:
-    """A scheme by its `name`; `source` says where it comes from and what it conserves.
+class Scheme(ABC):
+    """Kinetic energy and flux on one mesh, in metres; cells may be missing beyond its edges.
 
-    `kinetic_energy(mesh, u, K)` writes K at cells (n_cells,), m2/s2, from the normal velocity u at edges (n_edges,),
-    m/s. `flux(mesh, h, u, F)` writes F at edges (n_edges,), m2/s, from u and the thickness h at cells, m.
+    Attributes
+    ----------
+    name
+        What the user calls it.
+    source
+        Where it comes from.
+    mesh
+        The mesh as loops read it (`mesh.discrete.walls.closed_mesh`).
     """
 
-    name: str
-    source: str
-    kinetic_energy: Callable[[VoronoiMesh, Array, Array], None]
-    flux: Callable[[VoronoiMesh, Array, Array, Array], None]
+    name: ClassVar[str]
+    source: ClassVar[str]
+
+    def __init__(self, mesh: VoronoiMesh) -> None:
+        self.mesh = closed_mesh(mesh)
+
+    @abstractmethod
+    def kinetic_energy(self, u: Array, K: Array) -> None:
+        """Write K at cells (n_cells,), m2/s2, from the normal velocity u at edges (n_edges,), m/s."""
+
+    @abstractmethod
+    def flux(self, h: Array, u: Array, F: Array) -> None:
+        """Write F at edges (n_edges,), m2/s, from the thickness h at cells, m, and u; zero at walls."""
 
 
-def _kinetic_energy(mesh: VoronoiMesh, u: Array, K: Array) -> None:
-    """K_i = 1/A_i sum_e (1/4) l_e d_e u_e^2: Ringler et al. (2010), equation (63)."""
-    kernels.kinetic_energy(u, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.dc_edge, mesh.dv_edge, mesh.area_cell, K)
+class Ringler2010(Scheme):
+    """K_i = 1/A_i sum_e (1/4) l_e d_e u_e^2, Ringler et al. (2010), equation (63), and F_e = (h_1 + h_2)/2 u_e."""
 
+    name = "ringler2010"
+    source = "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy"
 
-def _flux(mesh: VoronoiMesh, h: Array, u: Array, F: Array) -> None:
-    """F_e = (h_1 + h_2)/2 u_e."""
-    kernels.thickness_flux(h, u, mesh.cells_on_edge, F)
+    def kinetic_energy(self, u: Array, K: Array) -> None:
+        """See `Scheme`."""
+        mesh = self.mesh
+        kernels.kinetic_energy(
+            u, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.dc_edge, mesh.dv_edge, mesh.area_cell, K
+        )
 
-
-RINGLER2010 = Scheme(
-    "ringler2010",
-    "Thuburn et al. (2009) and Ringler et al. (2010), conserving energy",
-    _kinetic_energy,
-    _flux,
-)
-"""The only scheme whose steps are also fused (`swe.tiles`)."""
+    def flux(self, h: Array, u: Array, F: Array) -> None:
+        """See `Scheme`."""
+        kernels.thickness_flux(h, u, self.mesh.cells_on_edge, F)

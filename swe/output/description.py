@@ -21,6 +21,9 @@ from swe.stepping.time_stepping import Tendency
 ABSENT: dict[str, object] = {"fields": list(FIELDS), "forcings": []}
 """What holds for runs of earlier versions, whose records do not say."""
 
+ABSENT_CONFIGURATION = {"scheme": "ringler2010"}
+"""The same for their configuration."""
+
 
 @dataclass(frozen=True, eq=False)
 class RunDescription:

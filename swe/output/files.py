@@ -80,7 +80,7 @@ def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dic
         "parameters": json.dumps(description["parameters"]),
         "mesh_hash": description["mesh_hash"],
         "scheme": model.scheme.source,
-        **description["configuration"],
+        **{name: value for name, value in description["configuration"].items() if name != "scheme"},
         "trisk_version": package_versions()["trisk"],
     }
 

@@ -23,7 +23,7 @@ from swe.output.checkpoint import (
     remove_superseded,
     write_checkpoint,
 )
-from swe.output.description import ABSENT, Moment, RunDescription, described, difference
+from swe.output.description import ABSENT, ABSENT_CONFIGURATION, Moment, RunDescription, described, difference
 from swe.output.files import (
     DIAGNOSTICS_FILE,
     HISTORY_FILE,
@@ -76,6 +76,8 @@ class Recorder:
         """Raise `InputError` if the earlier run was made with other settings; take over its days and elapsed time."""
         for name, now in self._description.items():
             then = before.get(name, ABSENT.get(name))
+            if name == "configuration" and isinstance(then, dict):
+                then = {**ABSENT_CONFIGURATION, **then}
             if then != now:
                 raise InputError(f"{self.directory} holds {difference(name, then, now)}; {HOW_TO_GO_ON}")
         if before.get("versions") != self._versions:

@@ -7,8 +7,10 @@ import numpy as np
 from mesh.discrete.walls import closed_mesh
 from swe.configuration import Configuration, Options
 from swe.equations.anticipation import Anticipation
+from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, courant_number
+from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.soundness import warning_of_vertices
 from swe.equations.terms import Term
 from swe.errors import InputError
@@ -17,6 +19,9 @@ from swe.stepping.schedule import dividing_step
 
 DEFAULT_COURANT_NUMBER = 0.8
 """Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+
+SCHEMES: dict[str, type[Scheme]] = {scheme.name: scheme for scheme in (Ringler2010, Consistent)}
+"""Schemes by the names that a user gives."""
 
 
 def default_time_step(start: CaseFields, options: Options) -> float:
@@ -46,7 +51,13 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
     terms += start.forcings
     case = start.case
     return ShallowWaterModel(
-        start.mesh, start.topography, start.coriolis, case.gravity, case.prescribed_wind, terms=terms
+        start.mesh,
+        start.topography,
+        start.coriolis,
+        case.gravity,
+        case.prescribed_wind,
+        SCHEMES[configuration.scheme],
+        terms,
     )
 
 

@@ -16,6 +16,7 @@ from swe.configuration import (
     DEFAULT_SNAPSHOT_INTERVAL,
     Integrator,
     Options,
+    SchemeName,
 )
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.invariants import Invariants, measure_invariants
@@ -79,6 +80,9 @@ class Simulation:
         enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
     dissipation
         Coefficient of the biharmonic dissipation, m4/s, applied after each step.
+    scheme
+        "ringler2010", that of the published results, or "consistent", whose kinetic energy is exact for uniform flow on
+        cells of any shape, and whose errors therefore stay small on irregular meshes (`swe.equations.consistent`).
     fields
         Names of the fields in snapshots, from `swe.diagnostics.outputs.FIELDS`; all of them by default.
     overwrite
@@ -117,6 +121,7 @@ class Simulation:
         integrator: Integrator = "rk4",
         anticipation: float = 0.0,
         dissipation: float = 0.0,
+        scheme: SchemeName = "ringler2010",
         fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
@@ -130,6 +135,7 @@ class Simulation:
             integrator,
             anticipation,
             dissipation,
+            scheme,
         )
         options.require_suitable(case.name, case.prescribed_wind)
         output_fields = chosen_fields(fields)

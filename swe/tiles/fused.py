@@ -6,7 +6,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.triangulation.ordering import inverse_order
 from swe.equations.model import ShallowWaterModel
-from swe.equations.schemes import RINGLER2010
+from swe.equations.schemes import Ringler2010
 from swe.errors import InputError
 from swe.state import State
 from swe.tiles import tile_kernels
@@ -18,7 +18,7 @@ def why_not_fused(model: ShallowWaterModel) -> str | None:
     names = [term.name for term in model.terms_in_stages]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
-    return None if model.scheme is RINGLER2010 else f"the scheme is {model.scheme.name}"
+    return None if isinstance(model.scheme, Ringler2010) else f"the scheme is {model.scheme.name}"
 
 
 class FusedRungeKutta:

@@ -7,14 +7,14 @@ from mesh.discrete.walls import wall_edges
 from swe import ShallowWaterModel, State
 from swe.diagnostics.budgets import RATES
 from swe.diagnostics.invariants import measure_invariants
-from swe.equations.schemes import RINGLER2010, Scheme
+from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.terms import Term
 
 RADIUS = 6.4e6
 
 
 def random_model(
-    mesh: VoronoiMesh, *terms: Term, seed: int, scheme: Scheme = RINGLER2010
+    mesh: VoronoiMesh, *terms: Term, seed: int, scheme: type[Scheme] = Ringler2010
 ) -> tuple[ShallowWaterModel, State]:
     """A model on `mesh` in metres, and a state at rest at walls."""
     random = np.random.default_rng(seed)

@@ -1,6 +1,6 @@
 """Options that several commands share."""
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 import typer
 
@@ -13,6 +13,13 @@ CaseName = Annotated[
 Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case, such as angle=pi/2; repeatable."),
+]
+Scheme = Annotated[
+    Literal["ringler2010", "consistent"],
+    typer.Option(
+        "--scheme",
+        help="ringler2010, that of the published results, or consistent, whose errors stay small on irregular meshes.",
+    ),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
 Recompute = Annotated[

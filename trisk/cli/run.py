@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from trisk.cli.options import CaseName, Quiet, Recompute, Settings
+from trisk.cli.options import CaseName, Quiet, Recompute, Scheme, Settings
 
 
 def run(
@@ -39,6 +39,7 @@ def run(
             "--integrator", help="rk4, or rrk4, which scales its steps to conserve total energy to round-off."
         ),
     ] = "rk4",
+    scheme: Scheme = "ringler2010",
     anticipation: Annotated[
         float,
         typer.Option(
@@ -93,6 +94,7 @@ def run(
         "integrator": integrator,
         "anticipation": anticipation,
         "dissipation": dissipation,
+        "scheme": scheme,
     }
     # Refuse what can be refused before a mesh is made in vain.
     Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)

@@ -9,7 +9,8 @@ from mesh.arrays import Array
 from swe import InputError, ShallowWaterModel, Simulation, State
 from swe.diagnostics.budgets import measure_rates
 from swe.diagnostics.invariants import measure_invariants
-from swe.equations.schemes import RINGLER2010, Scheme
+from swe.equations.consistent import Consistent
+from swe.equations.schemes import Ringler2010, Scheme
 from swe.stepping.time_stepping import RungeKutta
 from swe.tiles.fused import FusedRungeKutta
 from tests.swe.random_model import random_model
@@ -20,20 +21,24 @@ def shares(mesh: VoronoiMesh) -> Array:
     return np.random.default_rng(9).uniform(0.3, 0.7, mesh.n_edges)
 
 
-def kinetic_energy(mesh: VoronoiMesh, u: Array, K: Array) -> None:
-    first, energy = shares(mesh), 0.5 * mesh.dv_edge * mesh.dc_edge * u**2
-    K[:] = np.bincount(mesh.cells_on_edge[:, 0], first * energy, mesh.n_cells)
-    K += np.bincount(mesh.cells_on_edge[:, 1], (1.0 - first) * energy, mesh.n_cells)
-    K /= mesh.area_cell
+class Uneven(Scheme):
+    name, source = "uneven", "a scheme of the tests"
+
+    def kinetic_energy(self, u: Array, K: Array) -> None:
+        mesh = self.mesh
+        first, energy = shares(mesh), 0.5 * mesh.dv_edge * mesh.dc_edge * u**2
+        K[:] = np.bincount(mesh.cells_on_edge[:, 0], first * energy, mesh.n_cells)
+        K += np.bincount(mesh.cells_on_edge[:, 1], (1.0 - first) * energy, mesh.n_cells)
+        K /= mesh.area_cell
+
+    def flux(self, h: Array, u: Array, F: Array) -> None:
+        mesh, first = self.mesh, shares(self.mesh)
+        F[:] = (first * h[mesh.cells_on_edge[:, 0]] + (1.0 - first) * h[mesh.cells_on_edge[:, 1]]) * u
 
 
-def flux(mesh: VoronoiMesh, h: Array, u: Array, F: Array) -> None:
-    first = shares(mesh)
-    F[:] = (first * h[mesh.cells_on_edge[:, 0]] + (1.0 - first) * h[mesh.cells_on_edge[:, 1]]) * u
-
-
-UNEVEN = Scheme("uneven", "a scheme of the tests", kinetic_energy, flux)
-WRONG = Scheme("wrong", "a scheme whose flux is not the derivative of its energy", kinetic_energy, RINGLER2010.flux)
+class Wrong(Uneven):
+    name, source = "wrong", "a scheme whose flux is not the derivative of its energy"
+    flux = Ringler2010.flux
 
 
 def energy_rate(model: ShallowWaterModel, state: State) -> tuple[float, float]:
@@ -53,15 +58,15 @@ def energy_rate(model: ShallowWaterModel, state: State) -> tuple[float, float]:
 
 
 def test_the_flux_is_the_derivative_of_the_energy(any_mesh: VoronoiMesh) -> None:
-    wrong, size = energy_rate(*random_model(any_mesh, seed=2, scheme=WRONG))
-    for scheme in (RINGLER2010, UNEVEN):
+    wrong, size = energy_rate(*random_model(any_mesh, seed=2, scheme=Wrong))
+    for scheme in (Ringler2010, Consistent, Uneven):
         rate, _ = energy_rate(*random_model(any_mesh, seed=2, scheme=scheme))
         assert abs(rate) < min(1e-7 * size, 1e-2 * abs(wrong)), scheme.name
 
 
 def test_budgets_know_the_scheme(any_mesh: VoronoiMesh) -> None:
     exchanges = {}
-    for scheme in (RINGLER2010, UNEVEN, WRONG):
+    for scheme in (Ringler2010, Consistent, Uneven, Wrong):
         model, state = random_model(any_mesh, seed=2, scheme=scheme)
         slope = state.empty_like()
         model.tendency(state, slope)
@@ -71,13 +76,14 @@ def test_budgets_know_the_scheme(any_mesh: VoronoiMesh) -> None:
         assert abs(rates["mass_rate_transport"]) < 1e-14 * (model.mesh.area_cell @ np.abs(slope.thickness))
         exchanges[scheme.name] = abs(rates["total_energy_rate_exchange"]) / size
     assert exchanges["ringler2010"] < 1e-12
+    assert exchanges["consistent"] < 1e-12
     assert exchanges["uneven"] < 1e-12
 
 
 def test_a_scheme_of_ones_own_runs_by_plain_loops(icosahedral_mesh: VoronoiMesh) -> None:
     simulation = Simulation(icosahedral_mesh, Williamson5())
     before, start = simulation.model, simulation.state.copy()
-    model = ShallowWaterModel(before.mesh, before.topography, before.coriolis, before.gravity, scheme=UNEVEN)
+    model = ShallowWaterModel(before.mesh, before.topography, before.coriolis, before.gravity, scheme=Uneven)
     with pytest.raises(InputError, match="the scheme is uneven, which the fused method lacks; take RungeKutta"):
         FusedRungeKutta(model)
     RungeKutta(model.tendency, start).advance(start, 300.0, 100)

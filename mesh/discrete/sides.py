@@ -1,0 +1,46 @@
+"""The sides of each cell in its own tangent plane: where its neighbours lie, and the middles of its Voronoi edges."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.discrete.walls import closed_mesh
+from mesh.geometry.sphere import dot, east_north, normalize
+from mesh.voronoi_mesh import VoronoiMesh
+
+
+@dataclass(frozen=True, eq=False)
+class Sides:
+    """Vectors (n_cells, max_edges, 2) of the sides of every cell, eastward and northward at its centre.
+
+    `normal` is the unit vector towards the neighbour, `middle` leads from the centre to the middle of the Voronoi edge,
+    in the units of the radius; both follow great circles. Zero beyond the last side of a cell, and at walls.
+    """
+
+    normal: Array
+    middle: Array
+
+
+def sides_of_cells(mesh: VoronoiMesh) -> Sides:
+    """The sides of the cells of `mesh`."""
+    there, mesh, radius = mesh.edge_signs_on_cell != 0, closed_mesh(mesh), mesh.sphere_radius
+    centers, vertices = mesh.cell_points / radius, mesh.vertex_points / radius
+    middles = normalize(vertices[mesh.vertices_on_edge].sum(axis=1))[np.where(there, mesh.edges_on_cell, 0)]
+    neighbours = centers[np.where(there, mesh.cells_on_cell, 0)]
+    axes = np.stack(east_north(mesh.lon_cell, mesh.lat_cell), axis=1)
+    normal, _ = _direction_and_arc(centers, axes, neighbours)
+    direction, arc = _direction_and_arc(centers, axes, middles)
+    return Sides(normal * there[..., None], radius * direction * (arc * there)[..., None])
+
+
+def _direction_and_arc(centers: Array, axes: Array, points: Array) -> tuple[Array, Array]:
+    """Unit vectors (n, k, 2) in which `points` (n, k, 3) are seen from `centers` (n, 3), and their distances, radians.
+
+    `axes` (n, 2, 3) are the vectors to the east and to the north.
+    """
+    chord = points - centers[:, None]
+    seen = np.einsum("nkx,nax->nka", chord, axes)
+    length = np.linalg.norm(seen, axis=-1)
+    arc = np.arctan2(length, dot(points, centers[:, None]))
+    return seen / np.where(length > 0.0, length, 1.0)[..., None], arc
