@@ -30,7 +30,8 @@ class Consistent(Scheme):
 
     def __init__(self, mesh: VoronoiMesh) -> None:
         super().__init__(mesh)
-        sides, signs = sides_of_cells(mesh), mesh.edge_signs_on_cell
+        self.sides = sides = sides_of_cells(mesh)
+        signs = mesh.edge_signs_on_cell
         mesh = self.mesh
         self._on_cells = (
             *(mesh.n_edges_on_cell, mesh.edges_on_cell, signs, mesh.dc_edge, mesh.dv_edge, mesh.area_cell),

@@ -21,11 +21,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
+from mesh.discrete.sides import Sides
 from mesh.discrete.walls import closed_mesh
 from mesh.triangulation.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
-from swe.tiles.tile_kernels import MIRROR, RING, TileArrays
+from swe.tiles.layout import MIRROR, RING, TileArrays
 
 CELLS_PER_TILE = 2560
 """Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
@@ -79,7 +80,10 @@ class Tiles:
 
 @dataclass(frozen=True)
 class LocalSizes:
-    """Numbers of cells with halo, cells computed, edges with halo, own edges, vertices, and sides of rings."""
+    """Numbers of cells with halo, cells computed, edges with halo, own edges, vertices, and sides of rings.
+
+    `flux_sides` are those of the cells whose part of the flux is found first; none in tiles without such parts.
+    """
 
     cells: int
     computed_cells: int
@@ -87,16 +91,24 @@ class LocalSizes:
     own_edges: int
     vertices: int
     sides: int
+    flux_sides: int
 
 
 def build_tiles(
-    mesh: VoronoiMesh, topography: Array, coriolis: Array, gravity: float, cells_per_tile: int = CELLS_PER_TILE
+    mesh: VoronoiMesh,
+    topography: Array,
+    coriolis: Array,
+    gravity: float,
+    sides: Sides | None = None,
+    cells_per_tile: int = CELLS_PER_TILE,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
     Where neighbours are missing, a tile reads an edge of no length, kites of no area and a wall's own cell twice.
-    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. Raises `InputError` if not
-    even the surroundings of a single cell fit.
+    `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. With `sides`, the tiles are
+    those of a scheme whose flux through a side has a part from each of its cells: they hold the rings of all cells
+    around those computed, and the vectors of their sides. Raises `InputError` if not even the surroundings of a single
+    cell fit.
     """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
@@ -107,7 +119,7 @@ def build_tiles(
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
-    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, cell_rank, inverse_order(edge_order))
+    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, cell_rank, inverse_order(edge_order))
     pieces = [
         cutter.cut(
             cell_order[first_cell[tile] : first_cell[tile + 1]], edge_order[first_edge[tile] : first_edge[tile + 1]]
@@ -120,7 +132,7 @@ def build_tiles(
             raise InputError(
                 f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
             )
-        return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2)
+        return build_tiles(whole, topography, coriolis, gravity, sides, cells_per_tile // 2)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
     metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
@@ -159,6 +171,7 @@ class _Cutter:
         topography: Array,
         coriolis: Array,
         gravity: float,
+        sides: Sides | None,
         cell_rank: Index,
         edge_rank: Index,
     ) -> None:
@@ -168,6 +181,7 @@ class _Cutter:
         self.planetary = coriolis * mesh.area_triangle
         self.ratio = mesh.dv_edge / mesh.dc_edge
         self.on_cell, self.on_vertex = signs
+        self.sides = sides
         self.prefix = _area_passed(mesh)
         self.local_cells = _LocalNumbers(mesh.n_cells)
         self.local_edges = _LocalNumbers(mesh.n_edges)
@@ -186,6 +200,9 @@ class _Cutter:
         round_vertices = vertices.known()
         edges.add(mesh.edges_on_vertex[round_vertices])
         cells.add(mesh.cells_on_vertex[round_vertices])
+        ringed = computed if self.sides is None else cells.known()
+        around = mesh.n_edges_on_cell[ringed]
+        edges.add(mesh.edges_on_cell[ringed][np.arange(mesh.max_edges) < around[:, None]])
         slots = _slots(sides, mesh.max_edges)
         larger = np.flatnonzero(sides > RING)
         corners = vertices.of(mesh.vertices_on_cell[computed])
@@ -196,7 +213,7 @@ class _Cutter:
         if missing.any():
             round_edges[missing] = len(lengths)
             halo_edges, lengths = np.append(halo_edges, 0), np.append(lengths, 0.0)
-        ratio = np.where(self.on_cell[computed] == 0, 0.0, self.ratio[mesh.edges_on_cell[computed]])
+        ratio = np.where(self.on_cell[ringed] == 0, 0.0, self.ratio[mesh.edges_on_cell[ringed]])
         piece = _Piece(
             halo=[
                 self.cell_rank[cells.known()[len(own_cells) :]],
@@ -206,21 +223,23 @@ class _Cutter:
                 np.stack([self._slot(own_edges, end, slots) for end in (0, 1)]),
                 _signed(round_edges, self.on_vertex[round_vertices] > 0).T,
                 cells.of(mesh.cells_on_vertex[round_vertices]).T,
-                _ring(_signed(edges.of(mesh.edges_on_cell[computed]), self.on_cell[computed] > 0), sides, 0),
-                _ring(cells.of(mesh.cells_on_cell[computed]), sides, 0),
+                _ring(_signed(edges.of(mesh.edges_on_cell[ringed]), self.on_cell[ringed] > 0), around, 0),
+                self._across(computed, sides, around),
                 _ring(corners, sides, last_corner),
                 larger,
                 slots[larger, 0],
                 sides[larger],
+                *self._larger_in_flux(larger, around),
             ],
             metrics=[
                 lengths,
                 mesh.kite_areas_on_vertex[round_vertices].T,
                 self.planetary[round_vertices],
-                _ring(ratio, sides, 0.0),
+                _ring(ratio, around, 0.0),
                 _ring(self.prefix[computed], sides, 0.0),
-                1.0 / mesh.area_cell[computed],
+                1.0 / mesh.area_cell[ringed],
                 self.potential[computed],
+                *self._vectors(ringed, around, ratio),
             ],
             sizes=(
                 len(cells.known()),
@@ -228,12 +247,43 @@ class _Cutter:
                 len(lengths),
                 len(own_edges),
                 len(round_vertices),
-                RING * len(computed) + int(sides[larger].sum()),
+                _size_of_ring(sides),
+                0 if self.sides is None else _size_of_ring(around),
             ),
         )
         for numbers in (cells, edges, vertices):
             numbers.forget()
         return piece
+
+    def _across(self, computed: Index, sides: Index, around: Index) -> Index:
+        """What lies across every side: the cell or, in the layout of the flux, the same side seen from there."""
+        mesh, across = self.mesh, self.local_cells.of(self.mesh.cells_on_cell[computed])
+        if self.sides is None:
+            return _ring(across, sides, 0)
+        slots = _slots(around, mesh.max_edges)
+        edges = mesh.edges_on_cell[computed]
+        side = np.argmax(mesh.edges_on_cell[mesh.cells_on_cell[computed]] == edges[:, :, None], axis=2)
+        own = slots[: len(computed)]  # a side through which nothing flows is its own opposite
+        no_side = np.arange(len(computed)) + (RING - 1) * len(around)
+        return _ring(np.where(self.on_cell[computed] == 0, own, slots[across, side]), sides, no_side)
+
+    def _larger_in_flux(self, larger: Index, around: Index) -> list[Index]:
+        """Where the flux of the `larger` cells starts; and for all cells around, which are larger, and their sides."""
+        if self.sides is None:
+            return []
+        slots, all_larger = _slots(around, self.mesh.max_edges), np.flatnonzero(around > RING)
+        return [slots[larger, 0], all_larger, slots[all_larger, 0], around[all_larger]]
+
+    def _vectors(self, ringed: Index, around: Index, ratio: Array) -> list[Array]:
+        """Vectors to neighbours and to middles of sides, and the tensor of the neighbours of each cell."""
+        if self.sides is None:
+            return []
+        mesh = self.mesh
+        neighbour = self.sides.normal[ringed] * mesh.dc_edge[mesh.edges_on_cell[ringed]][..., None]
+        vectors = np.concatenate([neighbour, self.sides.middle[ringed]], axis=2)
+        weighted = ratio * (np.arange(mesh.max_edges) < around[:, None]) / (2.0 * mesh.area_cell[ringed][:, None])
+        tensor = [(weighted * neighbour[..., a] * neighbour[..., b]).sum(axis=1) for a, b in ((0, 0), (0, 1), (1, 1))]
+        return [np.stack([_ring(vectors[..., k], around, 0.0) for k in range(4)]), np.stack(tensor)]
 
     def _slot(self, edges: Index, end: int, slots: Index) -> Index:
         """Slot into which the cell at `end` of each edge writes its contribution."""
@@ -298,6 +348,11 @@ def _area_passed(mesh: VoronoiMesh) -> Array:
         kite = (mesh.kite_areas_on_vertex[vertex] * (mesh.cells_on_vertex[vertex] == cell)).sum(axis=1)
         passed[:, side] = passed[:, side - 1] + kite / mesh.area_cell
     return passed
+
+
+def _size_of_ring(sides: Index) -> int:
+    """Number of places in a ring array of cells with these sides."""
+    return RING * len(sides) + int(sides[sides > RING].sum())
 
 
 def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:

@@ -6,11 +6,13 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.triangulation.ordering import inverse_order
 from swe.equations.model import ShallowWaterModel
+from swe.equations.consistent import Consistent
 from swe.equations.schemes import Ringler2010
 from swe.errors import InputError
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
+from swe.tiles.layout import MIRROR
 
 
 def why_not_fused(model: ShallowWaterModel) -> str | None:
@@ -18,7 +20,7 @@ def why_not_fused(model: ShallowWaterModel) -> str | None:
     names = [term.name for term in model.terms_in_stages]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
-    return None if isinstance(model.scheme, Ringler2010) else f"the scheme is {model.scheme.name}"
+    return None if isinstance(model.scheme, Ringler2010 | Consistent) else f"the scheme is {model.scheme.name}"
 
 
 class FusedRungeKutta:
@@ -33,9 +35,11 @@ class FusedRungeKutta:
         reason = why_not_fused(model)
         if reason:
             raise InputError(f"{reason}, which the fused method lacks; take RungeKutta(model.tendency, ...)")
-        self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity)
+        sides = model.scheme.sides if isinstance(model.scheme, Consistent) else None
+        self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity, sides)
         self.model = model
         self._scratch = _scratch(self.tiles)
+        self._parts = None if sides is None else _parts_of_flux(self.tiles)
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(3)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
@@ -70,7 +74,7 @@ class FusedRungeKutta:
     def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
         tiles, model = self.tiles, self.model
         taken: int = tile_kernels.rk4_steps(
-            *(tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, y, *self._stages),
+            *(tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y, *self._stages),
             *(time_step, steps, self._unsound),
         )
         return taken
@@ -78,7 +82,7 @@ class FusedRungeKutta:
     def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
         """The stages of `rk4_steps`, with an exchange of values between processes after each."""
         model, (second, third, fourth) = self.model, self._stages
-        fixed = (self.tiles.arrays, self._scratch, model.gravity, not model.prescribed_wind, y)
+        fixed = (self.tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y)
         for taken in range(1, steps + 1):
             for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
                 tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
@@ -106,7 +110,9 @@ class FusedRungeKutta:
         for values in slope:
             values.fill(0.0)
         moving, at = not model.prescribed_wind, self._in_order(state)
-        tile_kernels.tendency(tiles.arrays, self._scratch, model.gravity, moving, at, slope, self._unsound)
+        tile_kernels.tendency(
+            tiles.arrays, self._scratch, self._parts, model.gravity, moving, at, slope, self._unsound
+        )
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:
@@ -137,10 +143,16 @@ def _scratch(tiles: Tiles) -> tuple[Array, ...]:
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     sizes = (
         most.cells,
-        tile_kernels.MIRROR + most.edges,
+        MIRROR + most.edges,
         most.vertices,
         most.sides,
         most.computed_cells,
         most.own_edges,
     )
     return tuple(np.zeros((threads, size)) for size in sizes)
+
+
+def _parts_of_flux(tiles: Tiles) -> tuple[Array, ...]:
+    """The same for schemes whose flux has parts: kinetic energy, and the parts of the flux."""
+    most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    return tuple(np.zeros((threads, size)) for size in (most.cells, most.flux_sides))

@@ -23,22 +23,8 @@ from numba import types
 from numba.extending import intrinsic
 
 from mesh.arrays import Array, Index
-
-MIRROR = 12300
-"""Distance of -U from U in scratch, so also the most edges in a tile; whole pages would share sets of the cache."""
-
-RING = 6
-"""Sides that the vectorised loop over cells computes; the few cells with more are computed again separately."""
-
-options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
-TileArrays = tuple[Index, Index, Index, Index, Index, Index, Array, Index]
-"""See `swe.tiles.cutting.Tiles.arrays`."""
-
-Arrays = tuple[Array, ...]
-
-part_options: dict[str, Any] = {**options, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-inlined = numba.njit(**part_options)
-compiled = numba.njit(parallel=True, cache=True, **options)
+from swe.tiles import cell_loop, consistent_loop
+from swe.tiles.layout import MIRROR, Arrays, TileArrays, compiled, inlined, options
 
 
 @inlined
@@ -76,99 +62,6 @@ def _potential_vorticity(
 
 
 @inlined
-def _one_cell(
-    i: int,
-    start: int,
-    stride: int,
-    sides: int,
-    gravity: float,
-    h: Array,
-    U: Array,
-    q: Array,
-    edges: Index,
-    cells: Index,
-    vertices: Index,
-    ratio: Array,
-    P: Array,
-    inverse_area: Array,
-    potential: Array,
-    dh: Array,
-    S: Array,
-) -> None:
-    """dh_i/dt, and for every side j the sum S_j of the Bernoulli function B and of the cell's part of Q.
-
-    With G_j the outflow h_e l_e u_e through side j, q_j the mean of its two vertices and P_j the fraction of the area
-    in the kites before side j, counted from the first,
-
-        Q_j = 1/2 sum_k (q_j + q_k) G_k (1/2 + P_j - P_k - [k < j] - [k = j]/2).
-
-    The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
-    """
-    outflow = outflow_P = qG = qG_P = energy = 0.0
-    last = q[vertices[start + (sides - 1) * stride]]
-    before = last
-    for j in range(sides):
-        r = start + j * stride
-        U_j = U[edges[r]]
-        normal = ratio[r] * U_j
-        energy += normal * U_j
-        G_j = (h[i] + h[cells[r]]) * normal
-        after = q[vertices[r]]
-        qG_j = (before + after) * G_j
-        before = after
-        outflow += G_j
-        outflow_P += P[r] * G_j
-        qG += qG_j
-        qG_P += P[r] * qG_j
-    dh[i] = -0.5 * outflow * inverse_area[i]
-    B = potential[i] + gravity * h[i] + 0.25 * energy * inverse_area[i]
-    beyond = 0.5 * outflow - outflow_P
-    q_beyond = 0.5 * qG - qG_P
-    before = last
-    for j in range(sides):
-        r = start + j * stride
-        G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
-        after = q[vertices[r]]
-        q_j = before + after
-        before = after
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
-        S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
-
-
-@inlined
-def _all_cells(
-    gravity: float,
-    h: Array,
-    U: Array,
-    q: Array,
-    edges: Index,
-    cells: Index,
-    vertices: Index,
-    ratio: Array,
-    P: Array,
-    inverse_area: Array,
-    potential: Array,
-    larger: Index,
-    larger_start: Index,
-    larger_sides: Index,
-    dh: Array,
-    S: Array,
-) -> None:
-    """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""
-    n = inverse_area.size
-    for i in range(n):
-        _one_cell(i, i, n, RING, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S)
-    for k in range(larger.size):
-        i, start, sides = larger[k], larger_start[k], larger_sides[k]
-        _one_cell(
-            i, start, 1, sides, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S
-        )
-
-
-@inlined
 def _velocity_tendency(S: Array, slots: Index, d: Array, du: Array) -> None:
     """du_e/dt = (S of the first cell - S of the second) / d_e at the tile's own edges."""
     n = du.size
@@ -178,7 +71,15 @@ def _velocity_tendency(S: Array, slots: Index, d: Array, du: Array) -> None:
 
 @inlined
 def _tendency_of_tile(
-    tile: int, thread: int, tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, h: Array, u: Array
+    tile: int,
+    thread: int,
+    tiles: TileArrays,
+    scratch: Arrays,
+    parts: Arrays | None,
+    gravity: float,
+    moving: bool,
+    h: Array,
+    u: Array,
 ) -> None:
     """The tendency of the tile's own cells and edges at the state h, u, in the scratch of `thread`."""
     first_cell, first_edge, halo, halo_parts, indices, index_parts, metrics, metric_parts = tiles
@@ -187,7 +88,7 @@ def _tendency_of_tile(
     halo_cells, halo_edges = halo[a[0] : a[1]], halo[a[1] : a[2]]
     slots = indices[b[0] : b[1]]
     edges_on_vertex, cells_on_vertex = indices[b[1] : b[2]], indices[b[2] : b[3]]
-    edges, cells, vertices = indices[b[3] : b[4]], indices[b[4] : b[5]], indices[b[5] : b[6]]
+    edges, across, vertices = indices[b[3] : b[4]], indices[b[4] : b[5]], indices[b[5] : b[6]]
     larger, larger_start, larger_sides = indices[b[6] : b[7]], indices[b[7] : b[8]], indices[b[8] : b[9]]
     d, kites, planetary = metrics[c[0] : c[1]], metrics[c[1] : c[2]], metrics[c[2] : c[3]]
     ratio, P = metrics[c[3] : c[4]], metrics[c[4] : c[5]]
@@ -202,24 +103,59 @@ def _tendency_of_tile(
         _potential_vorticity(U, local, edges_on_vertex, cells_on_vertex, kites, planetary, q)
     else:
         q[:] = 0.0
-    _all_cells(
-        gravity,
-        local,
-        U,
-        q,
-        edges,
-        cells,
-        vertices,
-        ratio,
-        P,
-        inverse_area,
-        potential,
-        larger,
-        larger_start,
-        larger_sides,
-        dh,
-        S,
-    )
+    if parts is None:
+        cell_loop.all_cells(
+            gravity,
+            local,
+            U,
+            q,
+            edges,
+            across,
+            vertices,
+            ratio,
+            P,
+            inverse_area,
+            potential,
+            larger,
+            larger_start,
+            larger_sides,
+            dh,
+            S,
+        )
+    else:
+        K, part = parts[0][thread], parts[1][thread]
+        consistent_loop.fluxes(
+            local,
+            U,
+            edges,
+            ratio,
+            inverse_area,
+            metrics[c[7] : c[8]],
+            metrics[c[8] : c[9]],
+            indices[b[10] : b[11]],
+            indices[b[11] : b[12]],
+            indices[b[12] : b[13]],
+            K,
+            part,
+        )
+        consistent_loop.all_cells(
+            gravity,
+            local,
+            q,
+            across,
+            vertices,
+            P,
+            inverse_area,
+            potential,
+            larger,
+            larger_start,
+            larger_sides,
+            indices[b[9] : b[10]],
+            K,
+            part,
+            dh,
+            S,
+        )
     if moving:
         _velocity_tendency(S, slots, d, du)
     else:
@@ -263,6 +199,7 @@ def _stage_of_tile(
     thread: int,
     tiles: TileArrays,
     scratch: Arrays,
+    parts: Arrays | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -275,7 +212,7 @@ def _stage_of_tile(
     unsound: Index,
 ) -> None:
     """Tendency and update of one tile; see `stage`."""
-    _tendency_of_tile(tile, thread, tiles, scratch, gravity, moving, at[0], at[1])
+    _tendency_of_tile(tile, thread, tiles, scratch, parts, gravity, moving, at[0], at[1])
     dh, du = scratch[4][thread], scratch[5][thread]
     cell, next_cell, edge, next_edge = tiles[0][tile], tiles[0][tile + 1], tiles[1][tile], tiles[1][tile + 1]
     if weight == 0.0:
@@ -315,6 +252,7 @@ use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_ve
 def stage(
     tiles: TileArrays,
     scratch: Arrays,
+    parts: Arrays | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -338,6 +276,7 @@ def stage(
             numba.get_thread_id(),
             tiles,
             scratch,
+            parts,
             gravity,
             moving,
             y,
@@ -353,16 +292,24 @@ def stage(
 
 @numba.njit(cache=True, **options)
 def tendency(
-    tiles: TileArrays, scratch: Arrays, gravity: float, moving: bool, at: Arrays, slope: Arrays, unsound: Index
+    tiles: TileArrays,
+    scratch: Arrays,
+    parts: Arrays | None,
+    gravity: float,
+    moving: bool,
+    at: Arrays,
+    slope: Arrays,
+    unsound: Index,
 ) -> None:
     """Write the slope at the state `at` into `slope`, zero beforehand, both in the order of the tiles."""
-    stage(tiles, scratch, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
+    stage(tiles, scratch, parts, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
 
 
 @numba.njit(cache=True, **options)
 def rk4_steps(
     tiles: TileArrays,
     scratch: Arrays,
+    parts: Arrays | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -381,10 +328,10 @@ def rk4_steps(
     """
     dt = time_step
     for taken in range(1, count + 1):
-        stage(tiles, scratch, gravity, moving, y, y, second, third, second, dt, 0.5, unsound)
-        stage(tiles, scratch, gravity, moving, y, second, second, third, third, dt, 0.5, unsound)
-        stage(tiles, scratch, gravity, moving, y, third, second, third, fourth, dt, 1.0, unsound)
-        stage(tiles, scratch, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, unsound)
+        stage(tiles, scratch, parts, gravity, moving, y, y, second, third, second, dt, 0.5, unsound)
+        stage(tiles, scratch, parts, gravity, moving, y, second, second, third, third, dt, 0.5, unsound)
+        stage(tiles, scratch, parts, gravity, moving, y, third, second, third, fourth, dt, 1.0, unsound)
+        stage(tiles, scratch, parts, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, unsound)
         if np.any(unsound > 0):
             return taken
     return count

@@ -1,0 +1,97 @@
+"""The loop over the cells of a tile: their tendencies, and what each adds to the acceleration of its edges."""
+
+from mesh.arrays import Array, Index
+from swe.tiles.layout import RING, inlined
+
+
+@inlined
+def _one_cell(
+    i: int,
+    start: int,
+    stride: int,
+    sides: int,
+    gravity: float,
+    h: Array,
+    U: Array,
+    q: Array,
+    edges: Index,
+    cells: Index,
+    vertices: Index,
+    ratio: Array,
+    P: Array,
+    inverse_area: Array,
+    potential: Array,
+    dh: Array,
+    S: Array,
+) -> None:
+    """dh_i/dt, and for every side j the sum S_j of the Bernoulli function B and of the cell's part of Q.
+
+    With G_j the outflow h_e l_e u_e through side j, q_j the mean of its two vertices and P_j the fraction of the area
+    in the kites before side j, counted from the first,
+
+        Q_j = 1/2 sum_k (q_j + q_k) G_k (1/2 + P_j - P_k - [k < j] - [k = j]/2).
+
+    The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
+    """
+    outflow = outflow_P = qG = qG_P = energy = 0.0
+    last = q[vertices[start + (sides - 1) * stride]]
+    before = last
+    for j in range(sides):
+        r = start + j * stride
+        U_j = U[edges[r]]
+        normal = ratio[r] * U_j
+        energy += normal * U_j
+        G_j = (h[i] + h[cells[r]]) * normal
+        after = q[vertices[r]]
+        qG_j = (before + after) * G_j
+        before = after
+        outflow += G_j
+        outflow_P += P[r] * G_j
+        qG += qG_j
+        qG_P += P[r] * qG_j
+    dh[i] = -0.5 * outflow * inverse_area[i]
+    B = potential[i] + gravity * h[i] + 0.25 * energy * inverse_area[i]
+    beyond = 0.5 * outflow - outflow_P
+    q_beyond = 0.5 * qG - qG_P
+    before = last
+    for j in range(sides):
+        r = start + j * stride
+        G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
+        after = q[vertices[r]]
+        q_j = before + after
+        before = after
+        beyond -= 0.5 * G_j
+        q_beyond -= 0.5 * (q_j * G_j)
+        S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
+        beyond -= 0.5 * G_j
+        q_beyond -= 0.5 * (q_j * G_j)
+
+
+@inlined
+def all_cells(
+    gravity: float,
+    h: Array,
+    U: Array,
+    q: Array,
+    edges: Index,
+    cells: Index,
+    vertices: Index,
+    ratio: Array,
+    P: Array,
+    inverse_area: Array,
+    potential: Array,
+    larger: Index,
+    larger_start: Index,
+    larger_sides: Index,
+    dh: Array,
+    S: Array,
+) -> None:
+    """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""
+    n = inverse_area.size
+    for i in range(n):
+        _one_cell(i, i, n, RING, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S)
+    for k in range(larger.size):
+        i, start, sides = larger[k], larger_start[k], larger_sides[k]
+        _one_cell(
+            i, start, 1, sides, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S
+        )
