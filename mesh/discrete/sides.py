@@ -12,14 +12,15 @@ from mesh.voronoi_mesh import VoronoiMesh
 
 @dataclass(frozen=True, eq=False)
 class Sides:
-    """Vectors (n_cells, max_edges, 2) of the sides of every cell, eastward and northward at its centre.
+    """The sides of every cell, in the plane of the eastward and northward directions at its centre.
 
-    `normal` is the unit vector towards the neighbour, `middle` leads from the centre to the middle of the Voronoi edge,
-    in the units of the radius; both follow great circles. Zero beyond the last side of a cell, and at walls.
+    `normal` (n_cells, max_edges, 2) is the unit vector towards the neighbour, along the great circle. The middle of the
+    Voronoi edge, as seen along the great circle to it, lies `offset` (n_cells, max_edges) to the left of that line, in
+    the units of the radius. Both are zero beyond the last side of a cell, and at walls.
     """
 
     normal: Array
-    middle: Array
+    offset: Array
 
 
 def sides_of_cells(mesh: VoronoiMesh) -> Sides:
@@ -31,7 +32,8 @@ def sides_of_cells(mesh: VoronoiMesh) -> Sides:
     axes = np.stack(east_north(mesh.lon_cell, mesh.lat_cell), axis=1)
     normal, _ = _direction_and_arc(centers, axes, neighbours)
     direction, arc = _direction_and_arc(centers, axes, middles)
-    return Sides(normal * there[..., None], radius * direction * (arc * there)[..., None])
+    left = normal[..., 0] * direction[..., 1] - normal[..., 1] * direction[..., 0]
+    return Sides(normal * there[..., None], radius * arc * left * there)
 
 
 def _direction_and_arc(centers: Array, axes: Array, points: Array) -> tuple[Array, Array]:

@@ -1,7 +1,7 @@
 """The loop over the cells of a tile: their tendencies, and what each adds to the acceleration of its edges."""
 
 from mesh.arrays import Array, Index
-from swe.tiles.layout import RING, inlined
+from swe.tiles.layout import LANES, RING, inlined
 
 
 @inlined
@@ -87,9 +87,27 @@ def all_cells(
     S: Array,
 ) -> None:
     """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""
-    n = inverse_area.size
-    for i in range(n):
-        _one_cell(i, i, n, RING, gravity, h, U, q, edges, cells, vertices, ratio, P, inverse_area, potential, dh, S)
+    for block in range(inverse_area.size // LANES):
+        for lane in range(LANES):
+            _one_cell(
+                LANES * block + lane,
+                RING * LANES * block + lane,
+                LANES,
+                RING,
+                gravity,
+                h,
+                U,
+                q,
+                edges,
+                cells,
+                vertices,
+                ratio,
+                P,
+                inverse_area,
+                potential,
+                dh,
+                S,
+            )
     for k in range(larger.size):
         i, start, sides = larger[k], larger_start[k], larger_sides[k]
         _one_cell(

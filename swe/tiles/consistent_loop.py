@@ -1,19 +1,19 @@
 """The loops over the cells of a tile for the consistent scheme (`swe.equations.consistent`).
 
-The flux through a side has a part from each of its cells, so a first loop takes, for all cells of the tile and those
-around them, the velocity v and what it leaves over, and from these the part of the flux. The second loop adds the two
-parts of each side, and goes on as that of `swe.tiles.cell_loop`.
+The flux through a side has a part from each of its cells. So a first loop finds, for all cells of the tile and those
+around them, the velocity v and the vector y, and from these the parts of the flux; the second adds the two parts of
+each side, and goes on as the loop of `swe.tiles.cell_loop`.
 
-With the circulation U = d s u, vectors D = d n to the neighbour and r to the middle of the side, b = sum (l/d) U D and
-the tensor M = 1/(2A) sum (l/d) D D, which the tile stores,
+Sides carry the vector D = d n to the neighbour, and D* = e D turned to the left, to where the middle of the side is
+seen: r = D/2 + D*. With the circulation U = d s u, b = 1/(2A) sum (l/d) U D and c = 1/A sum (l/d) U D*,
 
-    v = 1/A sum (l/d) U r,    y = v + M v - b/(2A),    K = 1/2 v.(v + M v) - v.b/(2A) + 1/(4A) sum (l/d) U^2
+    v = b + c,    y = c + M v,    M = 1/(2A) sum (l/d) D D,    K = 1/2 v.(y - b) + 1/(4A) sum (l/d) U^2
 
-and the part of the flux is h (l/d) [(U - D.v)/2 + r.y].
+and the part of the flux through a side, times its length, is h (l/d) [U/2 + D.(y - v)/2 + D*.y].
 """
 
 from mesh.arrays import Array, Index
-from swe.tiles.layout import RING, inlined
+from swe.tiles.layout import LANES, RING, inlined
 
 
 @inlined
@@ -22,42 +22,42 @@ def _flux_of_cell(
     start: int,
     stride: int,
     sides: int,
+    vector: int,
     h: Array,
     U: Array,
     edges: Index,
     ratio: Array,
     inverse_area: Array,
     vectors: Array,
-    tensor: Array,
     K: Array,
     part: Array,
 ) -> None:
-    """K of cell i, and twice its part of the outflow through every side."""
-    n = ratio.size
-    v_0 = v_1 = b_0 = b_1 = energy = 0.0
+    """K of cell i, and twice its part of the outflow through every side; `vector` is where its first D stands."""
+    b_0 = b_1 = c_0 = c_1 = M_00 = M_01 = M_11 = energy = 0.0
     for j in range(sides):
-        r = start + j * stride
-        U_j = U[edges[r]]
-        normal = ratio[r] * U_j
-        energy += normal * U_j
-        b_0 += normal * vectors[r]
-        b_1 += normal * vectors[n + r]
-        v_0 += normal * vectors[2 * n + r]
-        v_1 += normal * vectors[3 * n + r]
-    m = inverse_area.size
-    v_0 *= inverse_area[i]
-    v_1 *= inverse_area[i]
-    b_0 *= 0.5 * inverse_area[i]
-    b_1 *= 0.5 * inverse_area[i]
-    twice_0 = v_0 + (tensor[i] * v_0 + tensor[m + i] * v_1)
-    twice_1 = v_1 + (tensor[m + i] * v_0 + tensor[2 * m + i] * v_1)
-    y_0, y_1 = 2.0 * (twice_0 - b_0), 2.0 * (twice_1 - b_1)
-    K[i] = v_0 * (0.5 * twice_0 - b_0) + v_1 * (0.5 * twice_1 - b_1) + 0.25 * energy * inverse_area[i]
+        r, w = start + j * stride, vector + j * stride
+        D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
+        normal = ratio[r] * U[edges[r]]
+        energy += normal * U[edges[r]]
+        b_0 += normal * D_0
+        b_1 += normal * D_1
+        c_0 -= normal * turned * D_1
+        c_1 += normal * turned * D_0
+        M_00 += ratio[r] * D_0 * D_0
+        M_01 += ratio[r] * D_0 * D_1
+        M_11 += ratio[r] * D_1 * D_1
+    half = 0.5 * inverse_area[i]
+    b_0, b_1, c_0, c_1 = half * b_0, half * b_1, 2.0 * half * c_0, 2.0 * half * c_1
+    v_0, v_1 = b_0 + c_0, b_1 + c_1
+    y_0 = c_0 + half * (M_00 * v_0 + M_01 * v_1)
+    y_1 = c_1 + half * (M_01 * v_0 + M_11 * v_1)
+    K[i] = 0.5 * (v_0 * (y_0 - b_0) + v_1 * (y_1 - b_1) + half * energy)
     for j in range(sides):
-        r = start + j * stride
-        along = vectors[r] * v_0 + vectors[n + r] * v_1
-        across = vectors[2 * n + r] * y_0 + vectors[3 * n + r] * y_1
-        part[r] = h[i] * (ratio[r] * (U[edges[r]] - along + across))
+        r, w = start + j * stride, vector + j * stride
+        D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
+        along = D_0 * (y_0 - v_0) + D_1 * (y_1 - v_1)
+        across = turned * (D_0 * y_1 - D_1 * y_0)
+        part[r] = h[i] * (ratio[r] * (U[edges[r]] + along + 2.0 * across))
 
 
 @inlined
@@ -68,7 +68,6 @@ def fluxes(
     ratio: Array,
     inverse_area: Array,
     vectors: Array,
-    tensor: Array,
     larger: Index,
     larger_start: Index,
     larger_sides: Index,
@@ -76,12 +75,13 @@ def fluxes(
     part: Array,
 ) -> None:
     """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""
-    n = inverse_area.size
-    for i in range(n):
-        _flux_of_cell(i, i, n, RING, h, U, edges, ratio, inverse_area, vectors, tensor, K, part)
+    for block in range(inverse_area.size // LANES):
+        for lane in range(LANES):
+            i, start, vector = LANES * block + lane, RING * LANES * block + lane, 3 * RING * LANES * block + lane
+            _flux_of_cell(i, start, LANES, RING, vector, h, U, edges, ratio, inverse_area, vectors, K, part)
     for k in range(larger.size):
         i, start, sides = larger[k], larger_start[k], larger_sides[k]
-        _flux_of_cell(i, start, 1, sides, h, U, edges, ratio, inverse_area, vectors, tensor, K, part)
+        _flux_of_cell(i, start, 1, sides, 3 * start, h, U, edges, ratio, inverse_area, vectors, K, part)
 
 
 @inlined
@@ -90,8 +90,7 @@ def _one_cell(
     start: int,
     stride: int,
     sides: int,
-    from_start: int,
-    from_stride: int,
+    part_start: int,
     gravity: float,
     h: Array,
     q: Array,
@@ -111,7 +110,7 @@ def _one_cell(
     before = last
     for j in range(sides):
         r = start + j * stride
-        G_j = part[from_start + j * from_stride] - part[opposite[r]]
+        G_j = part[part_start + j * stride] - part[opposite[r]]
         after = q[vertices[r]]
         qG_j = (before + after) * G_j
         before = after
@@ -126,7 +125,7 @@ def _one_cell(
     before = last
     for j in range(sides):
         r = start + j * stride
-        G_j = part[from_start + j * from_stride] - part[opposite[r]]
+        G_j = part[part_start + j * stride] - part[opposite[r]]
         after = q[vertices[r]]
         q_j = before + after
         before = after
@@ -150,37 +149,21 @@ def all_cells(
     larger: Index,
     larger_start: Index,
     larger_sides: Index,
-    flux_start: Index,
+    part_start: Index,
     K: Array,
     part: Array,
     dh: Array,
     S: Array,
 ) -> None:
-    """The cells whose edges the tile needs; the parts of the flux are `fluxes`'."""
-    n, m = potential.size, inverse_area.size
-    for i in range(n):
-        _one_cell(
-            i, i, n, RING, i, m, gravity, h, q, opposite, vertices, P, inverse_area, potential, K, part, dh, S
-        )
+    """The cells whose edges the tile needs; the parts of the flux are those of `fluxes`."""
+    for block in range(potential.size // LANES):
+        for lane in range(LANES):
+            i, start = LANES * block + lane, RING * LANES * block + lane
+            _one_cell(
+                i, start, LANES, RING, start, gravity, h, q, opposite, vertices, P, inverse_area, potential, K, part, dh, S
+            )
     for k in range(larger.size):
         i, start, sides = larger[k], larger_start[k], larger_sides[k]
         _one_cell(
-            i,
-            start,
-            1,
-            sides,
-            flux_start[k],
-            1,
-            gravity,
-            h,
-            q,
-            opposite,
-            vertices,
-            P,
-            inverse_area,
-            potential,
-            K,
-            part,
-            dh,
-            S,
-        )
+                i, start, 1, sides, part_start[k], gravity, h, q, opposite, vertices, P, inverse_area, potential, K, part, dh, S
+            )

@@ -9,9 +9,9 @@ For these it needs the thickness of the cells around those vertices and the velo
 that it does not own are its halo.
 
 Everything a tile reads is stored contiguously, in the order in which it is read. The rings of sides of the cells are
-stored side by side (all first sides, all second sides, ...), so that neighbouring cells fill the lanes of a vector.
-Cells with fewer than `RING` sides are padded with sides of no length; those with more have their rings stored
-separately, after the others.
+stored in blocks of `LANES` cells (their first sides, their second sides, ...), so that neighbouring cells fill the lanes
+of a vector, and the memory is read as one stream. Cells with fewer than `RING` sides are padded with sides of no length,
+the last block with cells of none; cells with more sides have their rings stored separately, after the others.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ from mesh.discrete.walls import closed_mesh
 from mesh.triangulation.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
-from swe.tiles.layout import MIRROR, RING, TileArrays
+from swe.tiles.layout import LANES, MIRROR, RING, TileArrays
 
 CELLS_PER_TILE = 2560
 """Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
@@ -237,8 +237,8 @@ class _Cutter:
                 self.planetary[round_vertices],
                 _ring(ratio, around, 0.0),
                 _ring(self.prefix[computed], sides, 0.0),
-                1.0 / mesh.area_cell[ringed],
-                self.potential[computed],
+                _in_blocks(1.0 / mesh.area_cell[ringed]),
+                _in_blocks(self.potential[computed]),
                 *self._vectors(ringed, around, ratio),
             ],
             sizes=(
@@ -264,7 +264,7 @@ class _Cutter:
         edges = mesh.edges_on_cell[computed]
         side = np.argmax(mesh.edges_on_cell[mesh.cells_on_cell[computed]] == edges[:, :, None], axis=2)
         own = slots[: len(computed)]  # a side through which nothing flows is its own opposite
-        no_side = np.arange(len(computed)) + (RING - 1) * len(around)
+        no_side = _places(len(computed))[:, RING - 1]
         return _ring(np.where(self.on_cell[computed] == 0, own, slots[across, side]), sides, no_side)
 
     def _larger_in_flux(self, larger: Index, around: Index) -> list[Index]:
@@ -275,15 +275,17 @@ class _Cutter:
         return [slots[larger, 0], all_larger, slots[all_larger, 0], around[all_larger]]
 
     def _vectors(self, ringed: Index, around: Index, ratio: Array) -> list[Array]:
-        """Vectors to neighbours and to middles of sides, and the tensor of the neighbours of each cell."""
+        """The vector to each neighbour, and where its bisector meets the middle of the side, as parts of its length."""
         if self.sides is None:
             return []
-        mesh = self.mesh
-        neighbour = self.sides.normal[ringed] * mesh.dc_edge[mesh.edges_on_cell[ringed]][..., None]
-        vectors = np.concatenate([neighbour, self.sides.middle[ringed]], axis=2)
-        weighted = ratio * (np.arange(mesh.max_edges) < around[:, None]) / (2.0 * mesh.area_cell[ringed][:, None])
-        tensor = [(weighted * neighbour[..., a] * neighbour[..., b]).sum(axis=1) for a, b in ((0, 0), (0, 1), (1, 1))]
-        return [np.stack([_ring(vectors[..., k], around, 0.0) for k in range(4)]), np.stack(tensor)]
+        normal, length = self.sides.normal[ringed], self.mesh.dc_edge[self.mesh.edges_on_cell[ringed]]
+        numbers = [length * normal[..., 0], length * normal[..., 1], self.sides.offset[ringed] / length]
+        rings = [_ring(np.where(ratio == 0.0, 0.0, each), around, 0.0) for each in numbers]
+        in_blocks = RING * _whole_blocks(len(ringed))
+        blocks = np.stack([ring[:in_blocks].reshape(-1, RING * LANES) for ring in rings], axis=1)
+        ends = np.cumsum(around[around > RING])[:-1]
+        whole = [np.concatenate(parts) for parts in zip(*(np.split(ring[in_blocks:], ends) for ring in rings))]
+        return [np.concatenate([blocks.ravel(), *whole])]
 
     def _slot(self, edges: Index, end: int, slots: Index) -> Index:
         """Slot into which the cell at `end` of each edge writes its contribution."""
@@ -352,7 +354,7 @@ def _area_passed(mesh: VoronoiMesh) -> Array:
 
 def _size_of_ring(sides: Index) -> int:
     """Number of places in a ring array of cells with these sides."""
-    return RING * len(sides) + int(sides[sides > RING].sum())
+    return RING * _whole_blocks(len(sides)) + int(sides[sides > RING].sum())
 
 
 def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
@@ -360,25 +362,44 @@ def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
     return np.where(positive, numbers, numbers + MIRROR)
 
 
+def _whole_blocks(cells: int) -> int:
+    """Number of cells with those that fill the last block."""
+    return -(-cells // LANES) * LANES
+
+
+def _in_blocks(values: Array) -> Array:
+    """Values of cells, and zeros that fill the last block."""
+    return np.pad(values, (0, _whole_blocks(len(values)) - len(values)))
+
+
+def _places(cells: int) -> Index:
+    """Place of the first `RING` sides of each cell (cells, RING) in the ring arrays."""
+    block, lane = np.divmod(np.arange(cells), LANES)
+    return (RING * block[:, None] + np.arange(RING)) * LANES + lane[:, None]
+
+
 def _slots(sides: Index, max_edges: int) -> Index:
     """Place of every side (n, max_edges) in the ring arrays as `_ring` lays them out."""
-    n = len(sides)
     larger = np.flatnonzero(sides > RING)
-    slots = np.arange(n)[:, None] + n * np.minimum(np.arange(max_edges), RING - 1)
-    starts = RING * n + np.concatenate([[0], np.cumsum(sides[larger])[:-1]]).astype(np.int64)
+    slots = _places(len(sides))[:, np.minimum(np.arange(max_edges), RING - 1)]
+    starts = RING * _whole_blocks(len(sides)) + np.concatenate([[0], np.cumsum(sides[larger])[:-1]]).astype(np.int64)
     slots[larger] = starts[: len(larger), None] + np.minimum(np.arange(max_edges), sides[larger, None] - 1)
     return slots
 
 
 def _ring(values: NDArray[Any], sides: Index, filler: Index | float) -> NDArray[Any]:
-    """Rings (n, max_edges) as the kernels read them: `RING` sides of every cell, then whole rings of larger cells."""
-    inside = np.arange(values.shape[1]) < sides[:, None]
-    ring = np.empty((RING, len(sides)), values.dtype)
-    ring[:] = filler
+    """Rings (n, max_edges) as the kernels read them: `RING` sides of every cell, then whole rings of larger cells.
+
+    `filler` (n,), or one number, fills the rings of cells with fewer sides; the cells that fill the last block have 0.
+    """
+    inside, larger = np.arange(values.shape[1]) < sides[:, None], sides > RING
+    ring = np.empty((len(sides), RING), values.dtype)
+    ring.T[:] = filler
     for side in range(min(RING, values.shape[1])):
-        ring[side, inside[:, side]] = values[inside[:, side], side]
-    larger = sides > RING
-    return np.concatenate([ring.ravel(), values[larger][inside[larger]]])
+        ring[inside[:, side], side] = values[inside[:, side], side]
+    blocks = np.zeros(RING * _whole_blocks(len(sides)), values.dtype)
+    blocks[_places(len(sides))] = ring
+    return np.concatenate([blocks, values[larger][inside[larger]]])
 
 
 def _packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:

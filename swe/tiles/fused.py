@@ -12,7 +12,7 @@ from swe.errors import InputError
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
-from swe.tiles.layout import MIRROR
+from swe.tiles.layout import LANES, MIRROR
 
 
 def why_not_fused(model: ShallowWaterModel) -> str | None:
@@ -142,11 +142,11 @@ def _scratch(tiles: Tiles) -> tuple[Array, ...]:
     """
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     sizes = (
-        most.cells,
+        most.cells + LANES,
         MIRROR + most.edges,
         most.vertices,
         most.sides,
-        most.computed_cells,
+        most.computed_cells + LANES,
         most.own_edges,
     )
     return tuple(np.zeros((threads, size)) for size in sizes)
@@ -155,4 +155,4 @@ def _scratch(tiles: Tiles) -> tuple[Array, ...]:
 def _parts_of_flux(tiles: Tiles) -> tuple[Array, ...]:
     """The same for schemes whose flux has parts: kinetic energy, and the parts of the flux."""
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
-    return tuple(np.zeros((threads, size)) for size in (most.cells, most.flux_sides))
+    return tuple(np.zeros((threads, size)) for size in (most.cells + LANES, most.flux_sides))

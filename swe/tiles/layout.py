@@ -12,6 +12,9 @@ MIRROR = 12300
 RING = 6
 """Sides that the vectorised loop over cells computes; the few cells with more are computed again separately."""
 
+LANES = 8
+"""Cells whose rings are stored together, side by side: the widest vectors have as many lanes."""
+
 TileArrays = tuple[Index, Index, Index, Index, Index, Index, Array, Index]
 """See `swe.tiles.cutting.Tiles.arrays`."""
 

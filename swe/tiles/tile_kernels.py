@@ -131,7 +131,6 @@ def _tendency_of_tile(
             ratio,
             inverse_area,
             metrics[c[7] : c[8]],
-            metrics[c[8] : c[9]],
             indices[b[10] : b[11]],
             indices[b[11] : b[12]],
             indices[b[12] : b[13]],
