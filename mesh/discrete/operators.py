@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array, csr_array
 
 from mesh.arrays import Array, Index
+from mesh.discrete.sides import Sides, sides_of_cells
 from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -24,12 +25,13 @@ class Operators:
     """
 
     def __init__(self, mesh: VoronoiMesh) -> None:
-        self._mesh = closed_mesh(mesh)
+        self.mesh = closed_mesh(mesh)
+        self._given = mesh
 
     @cached_property
     def divergence(self) -> csr_array:
         """(cells x edges), equation (21)."""
-        mesh = self._mesh
+        mesh = self.mesh
         first, second = mesh.cells_on_edge.T
         return _scale_rows(
             1.0 / mesh.area_cell, _two_per_edge(first, second, mesh.dv_edge, -mesh.dv_edge, mesh.n_cells)
@@ -38,7 +40,7 @@ class Operators:
     @cached_property
     def gradient(self) -> csr_array:
         """(edges x cells), equation (22)."""
-        mesh = self._mesh
+        mesh = self.mesh
         first, second = mesh.cells_on_edge.T
         ones = np.ones(mesh.n_edges)
         return _scale_rows(1.0 / mesh.dc_edge, _two_per_edge(second, first, ones, -ones, mesh.n_cells).T)
@@ -46,7 +48,7 @@ class Operators:
     @cached_property
     def curl(self) -> csr_array:
         """(vertices x edges), equation (23)."""
-        mesh = self._mesh
+        mesh = self.mesh
         tail, head = mesh.vertices_on_edge.T
         return _scale_rows(
             1.0 / mesh.area_triangle, _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, mesh.n_vertices)
@@ -55,7 +57,7 @@ class Operators:
     @cached_property
     def perp(self) -> csr_array:
         """(edges x edges), from normal to tangential velocity, equation (24)."""
-        mesh = self._mesh
+        mesh = self.mesh
         filled = np.arange(mesh.edges_on_edge.shape[1]) < mesh.n_edges_on_edge[:, None]
         starts = np.concatenate([[0], np.cumsum(mesh.n_edges_on_edge)])
         values, columns = mesh.weights_on_edge[filled], mesh.edges_on_edge[filled]
@@ -66,23 +68,39 @@ class Operators:
     @cached_property
     def kinetic_energy(self) -> csr_array:
         """(cells x edges), from squares of normal velocities, equation (63)."""
-        mesh = self._mesh
+        mesh = self.mesh
         first, second = mesh.cells_on_edge.T
         # A wall, whose cells are one, has the share of one cell.
         quarter = np.where(first == second, 0.125, 0.25) * mesh.dv_edge * mesh.dc_edge
         return _scale_rows(1.0 / mesh.area_cell, _two_per_edge(first, second, quarter, quarter, mesh.n_cells))
 
     @cached_property
+    def outward(self) -> csr_array:
+        """(sides x edges), from velocities along the normals of edges to those out of each cell through its sides.
+
+        The sides of cell c are `max_edges` rows from c times `max_edges` on; those beyond its last and walls are empty.
+        """
+        signs = self._given.edge_signs_on_cell
+        edges = np.where(signs == 0, 0, self.mesh.edges_on_cell)
+        places = (np.arange(signs.size), edges.ravel())
+        return csr_array((signs.ravel().astype(float), places), shape=(signs.size, self.mesh.n_edges))
+
+    @cached_property
+    def sides(self) -> Sides:
+        """Where neighbours and middles of sides lie, as the centres of the cells see them."""
+        return sides_of_cells(self._given)
+
+    @cached_property
     def cell_to_edge(self) -> csr_array:
         """(edges x cells), the mean of two."""
-        first, second = self._mesh.cells_on_edge.T
-        halves = np.full(self._mesh.n_edges, 0.5)
-        return csr_array(_two_per_edge(first, second, halves, halves, self._mesh.n_cells).T)
+        first, second = self.mesh.cells_on_edge.T
+        halves = np.full(self.mesh.n_edges, 0.5)
+        return csr_array(_two_per_edge(first, second, halves, halves, self.mesh.n_cells).T)
 
     @cached_property
     def cell_to_vertex(self) -> csr_array:
         """(vertices x cells), weighted by kite areas, equation (25)."""
-        mesh = self._mesh
+        mesh = self.mesh
         vertex = np.repeat(np.arange(mesh.n_vertices), 3)
         kites = (mesh.kite_areas_on_vertex.ravel(), (vertex, mesh.cells_on_vertex.ravel()))
         return _scale_rows(1.0 / mesh.area_triangle, coo_array(kites, shape=(mesh.n_vertices, mesh.n_cells)))
@@ -90,7 +108,7 @@ class Operators:
     @cached_property
     def vertex_to_edge(self) -> csr_array:
         """(edges x vertices), the mean of two."""
-        mesh = self._mesh
+        mesh = self.mesh
         edge, (tail, head) = np.arange(mesh.n_edges), mesh.vertices_on_edge.T
         places = np.concatenate([edge, edge]), np.concatenate([tail, head])
         return csr_array(coo_array((np.full(2 * mesh.n_edges, 0.5), places), shape=(mesh.n_edges, mesh.n_vertices)))

@@ -16,11 +16,22 @@ class Sides:
 
     `normal` (n_cells, max_edges, 2) is the unit vector towards the neighbour, along the great circle. The middle of the
     Voronoi edge, as seen along the great circle to it, lies `offset` (n_cells, max_edges) to the left of that line, in
-    the units of the radius. Both are zero beyond the last side of a cell, and at walls.
+    the units of the radius. Both are zero beyond the last side of a cell, and at walls; `distance` (n_cells, max_edges)
+    to the neighbour is not.
     """
 
     normal: Array
     offset: Array
+    distance: Array
+
+    @property
+    def middle(self) -> Array:
+        """Vectors (n_cells, max_edges, 2) from the centre to the middle of every side.
+
+        As in the plane, they reach half the way to the neighbour.
+        """
+        left = np.stack([-self.normal[..., 1], self.normal[..., 0]], axis=-1)
+        return 0.5 * self.distance[..., None] * self.normal + self.offset[..., None] * left
 
 
 def sides_of_cells(mesh: VoronoiMesh) -> Sides:
@@ -33,7 +44,7 @@ def sides_of_cells(mesh: VoronoiMesh) -> Sides:
     normal, _ = _direction_and_arc(centers, axes, neighbours)
     direction, arc = _direction_and_arc(centers, axes, middles)
     left = normal[..., 0] * direction[..., 1] - normal[..., 1] * direction[..., 0]
-    return Sides(normal * there[..., None], radius * arc * left * there)
+    return Sides(normal * there[..., None], radius * arc * left * there, mesh.dc_edge[mesh.edges_on_cell])
 
 
 def _direction_and_arc(centers: Array, axes: Array, points: Array) -> tuple[Array, Array]:

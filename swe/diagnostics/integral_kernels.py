@@ -4,103 +4,11 @@ The letters are those of `swe.equations.kernels`.
 """
 
 import numba
-import numpy as np
 
 from mesh.arrays import Array, Index, Signs
-from swe.parallel.folding import NOTHING, add, add_all
+from swe.parallel.folding import NOTHING, add
 
-CHUNK = 256
-"""Number of terms summed together; they stay in the first-level cache."""
-
-inlined = numba.njit(error_model="numpy", fastmath={"contract"}, forceinline=True)
 compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
-
-
-@inlined
-def _energy_terms_of_edges(
-    start: int,
-    count: int,
-    h: Array,
-    u: Array,
-    h_after: Array,
-    u_after: Array,
-    half: Array,
-    cells_on_edge: Index,
-    first: Array,
-    second: Array,
-    third: Array,
-) -> None:
-    """Coefficients of c, c^2 and c^3 in l_e d_e h_e u_e^2 / 2 along increments, of `count` edges from `start` on."""
-    for m in range(count):
-        e = start + m
-        i, j = cells_on_edge[e, 0], cells_on_edge[e, 1]
-        h_e, p_e = 0.5 * (h[i] + h[j]), 0.5 * ((h_after[i] - h[i]) + (h_after[j] - h[j]))
-        v = u_after[e] - u[e]
-        first[m] = half[e] * u[e] * (2.0 * h_e * v + p_e * u[e])
-        second[m] = half[e] * v * (h_e * v + 2.0 * p_e * u[e])
-        third[m] = half[e] * v * v * p_e
-
-
-@inlined
-def _energy_terms_of_cells(
-    start: int, count: int, h: Array, h_after: Array, height: Array, g: float, A: Array, first: Array, second: Array
-) -> None:
-    """Coefficients of c and c^2 in g A_i h_i (h_i/2 + height_i), of `count` cells from `start` on."""
-    for m in range(count):
-        i = start + m
-        p = h_after[i] - h[i]
-        first[m] = g * A[i] * p * (h[i] + height[i])
-        second[m] = 0.5 * g * A[i] * p * p
-
-
-@compiled
-def energy_along(
-    h: Array,
-    u: Array,
-    h_after: Array,
-    u_after: Array,
-    height: Array,
-    g: float,
-    A: Array,
-    half: Array,
-    cells_on_edge: Index,
-    coarse: Array,
-    fine: Array,
-    sums: Array,
-) -> None:
-    """Parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 in the energy at h + c p, u + c v; see `work_of`.
-
-    The increments p and v lead to `h_after` and `u_after`. The energy is the sum of l_e d_e h_e u_e^2 / 2 over edges,
-    `half` being l_e d_e / 2, and of g A_i h_i (h_i/2 + height_i) over cells. The largest terms are not recorded.
-    """
-    blocks = sums.shape[0]
-    for k in numba.prange(blocks):
-        sums[k] = 0.0
-        terms, spare = np.empty((3, CHUNK)), np.empty(CHUNK)
-        last = (k + 1) * u.size // blocks
-        for start in range(k * u.size // blocks, last, CHUNK):
-            count = min(CHUNK, last - start)
-            _energy_terms_of_edges(
-                start,
-                count,
-                h,
-                u,
-                h_after,
-                u_after,
-                half,
-                cells_on_edge,
-                terms[0],
-                terms[1],
-                terms[2],
-            )
-            for m in range(3):
-                add_all(sums[k, m], terms[m], count, coarse[m], fine[m], spare)
-        last = (k + 1) * h.size // blocks
-        for start in range(k * h.size // blocks, last, CHUNK):
-            count = min(CHUNK, last - start)
-            _energy_terms_of_cells(start, count, h, h_after, height, g, A, terms[0], terms[1])
-            for m in range(2):
-                add_all(sums[k, m], terms[m], count, coarse[m], fine[m], spare)
 
 
 @compiled

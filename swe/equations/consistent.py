@@ -14,7 +14,7 @@ import numba
 import numpy as np
 
 from mesh.arrays import Array, Index, Signs
-from mesh.discrete.sides import Sides, sides_of_cells
+from mesh.discrete.sides import sides_of_cells
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.schemes import Scheme
 
@@ -35,7 +35,7 @@ class Consistent(Scheme):
         mesh = self.mesh
         self._on_cells = (
             *(mesh.n_edges_on_cell, mesh.edges_on_cell, signs, mesh.dc_edge, mesh.dv_edge, mesh.area_cell),
-            *(sides.normal, _middles(mesh, sides)),
+            *(sides.normal, sides.middle),
         )
         place = mesh.edges_on_cell[mesh.cells_on_edge] == np.arange(mesh.n_edges)[:, None, None]
         self._side_on_edge = np.argmax(place, axis=2).astype(np.int8)
@@ -53,13 +53,6 @@ class Consistent(Scheme):
             *(h, u, self._velocity, self._remainder, self.mesh.cells_on_edge, self._side_on_edge),
             *(signs, normals, middles, lengths, F),
         )
-
-
-def _middles(mesh: VoronoiMesh, sides: Sides) -> Array:
-    """Vectors (n_cells, max_edges, 2) from the centres of cells to the middles of their sides: r = d n/2 + offset."""
-    left = np.stack([-sides.normal[..., 1], sides.normal[..., 0]], axis=-1)
-    along = 0.5 * mesh.dc_edge[mesh.edges_on_cell][..., None] * sides.normal
-    return along + sides.offset[..., None] * left
 
 
 @inlined

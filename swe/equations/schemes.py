@@ -6,12 +6,16 @@ companion, F_e = 1/(l_e d_e) dE/du_e. `docs/scheme.md` derives this.
 """
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import ClassVar
+
+import numpy as np
 
 from mesh.arrays import Array
 from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
-from swe.equations import kernels
+from swe.equations import energy_along, kernels
+from swe.state import State
 
 
 class Scheme(ABC):
@@ -41,6 +45,24 @@ class Scheme(ABC):
     def flux(self, h: Array, u: Array, F: Array) -> None:
         """Write F at edges (n_edges,), m2/s, from the thickness h at cells, m, and u; zero at walls."""
 
+    def energy_along(
+        self, state: State, after: State, height: Array, gravity: float, folds: tuple[Array, Array], parts: Array
+    ) -> None:
+        """Write parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 of the energy between two states.
+
+        The energy is that of state + c (after - state), less that of `state`, with potential energy measured from where
+        the `height` of the bottom (n_cells,), m, is zero. `folds` are the coarse and fine ones of the three sums.
+        """
+        u, u_after = state.normal_velocity, after.normal_velocity
+        energies = np.empty((3, self.mesh.n_cells))
+        for velocity, K in zip((u, u_after, u_after - u), energies, strict=True):
+            self.kinetic_energy(velocity, K)
+        K, K_after, K_increment = energies
+        h, h_after, (coarse, fine) = state.thickness, after.thickness, folds
+        energy_along.sum_over_cells(
+            h, h_after, K, K_after, K_increment, height, gravity, self.mesh.area_cell, coarse, fine, parts
+        )
+
 
 class Ringler2010(Scheme):
     """K_i = 1/A_i sum_e (1/4) l_e d_e u_e^2, Ringler et al. (2010), equation (63), and F_e = (h_1 + h_2)/2 u_e."""
@@ -58,3 +80,27 @@ class Ringler2010(Scheme):
     def flux(self, h: Array, u: Array, F: Array) -> None:
         """See `Scheme`."""
         kernels.thickness_flux(h, u, self.mesh.cells_on_edge, F)
+
+    @cached_property
+    def _half(self) -> Array:
+        return 0.5 * self.mesh.dv_edge * self.mesh.dc_edge
+
+    def energy_along(
+        self, state: State, after: State, height: Array, gravity: float, folds: tuple[Array, Array], parts: Array
+    ) -> None:
+        """See `Scheme`; faster, as the kinetic energy is a sum over edges."""
+        mesh, (coarse, fine) = self.mesh, folds
+        energy_along.sum_over_edges(
+            state.thickness,
+            state.normal_velocity,
+            after.thickness,
+            after.normal_velocity,
+            height,
+            gravity,
+            mesh.area_cell,
+            self._half,
+            mesh.cells_on_edge,
+            coarse,
+            fine,
+            parts,
+        )

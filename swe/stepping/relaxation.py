@@ -11,7 +11,6 @@ so the factor is the root near 1 of a quadratic, whose coefficients are sums of 
 import numpy as np
 
 from mesh.arrays import Array
-from swe.diagnostics import integral_kernels
 from swe.diagnostics.invariants import mean_level
 from swe.equations.model import ShallowWaterModel
 from swe.parallel.folding import bounded_sums, folds
@@ -34,7 +33,6 @@ class Relaxation:
         self._model = model
         # Mass is conserved, so heights may be measured from any level; from the mean level their products are small.
         self._height = model.topography - mean_level(model, state)
-        self._half = 0.5 * model.mesh.dv_edge * model.mesh.dc_edge
         self._folds = np.array([folds(EXCESS * self._energy(state), model.entities)] * 3)
 
     def _energy(self, state: State) -> float:
@@ -47,23 +45,10 @@ class Relaxation:
 
     def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
         """e_1, e_2 and e_3 of the energy change along the increment from `state` to `after`, m5/s2."""
-        model, mesh = self._model, self._model.closed
+        model = self._model
 
         def along(coarse: Array, fine: Array, parts: Array) -> None:
-            integral_kernels.energy_along(
-                state.thickness,
-                state.normal_velocity,
-                after.thickness,
-                after.normal_velocity,
-                self._height,
-                model.gravity,
-                mesh.area_cell,
-                self._half,
-                mesh.cells_on_edge,
-                coarse,
-                fine,
-                parts,
-            )
+            model.scheme.energy_along(state, after, self._height, model.gravity, (coarse, fine), parts)
 
         first, second, third = bounded_sums(along, self._folds, model.processes)
         return first, second, third

@@ -160,10 +160,42 @@ def all_cells(
         for lane in range(LANES):
             i, start = LANES * block + lane, RING * LANES * block + lane
             _one_cell(
-                i, start, LANES, RING, start, gravity, h, q, opposite, vertices, P, inverse_area, potential, K, part, dh, S
+                i,
+                start,
+                LANES,
+                RING,
+                start,
+                gravity,
+                h,
+                q,
+                opposite,
+                vertices,
+                P,
+                inverse_area,
+                potential,
+                K,
+                part,
+                dh,
+                S,
             )
     for k in range(larger.size):
         i, start, sides = larger[k], larger_start[k], larger_sides[k]
         _one_cell(
-                i, start, 1, sides, part_start[k], gravity, h, q, opposite, vertices, P, inverse_area, potential, K, part, dh, S
-            )
+            i,
+            start,
+            1,
+            sides,
+            part_start[k],
+            gravity,
+            h,
+            q,
+            opposite,
+            vertices,
+            P,
+            inverse_area,
+            potential,
+            K,
+            part,
+            dh,
+            S,
+        )

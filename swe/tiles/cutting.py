@@ -9,9 +9,9 @@ For these it needs the thickness of the cells around those vertices and the velo
 that it does not own are its halo.
 
 Everything a tile reads is stored contiguously, in the order in which it is read. The rings of sides of the cells are
-stored in blocks of `LANES` cells (their first sides, their second sides, ...), so that neighbouring cells fill the lanes
-of a vector, and the memory is read as one stream. Cells with fewer than `RING` sides are padded with sides of no length,
-the last block with cells of none; cells with more sides have their rings stored separately, after the others.
+stored in blocks of `LANES` cells (their first sides, their second sides, ...), so that neighbouring cells fill the
+lanes of a vector, and the memory is read as one stream. Cells with fewer than `RING` sides are padded with sides of no
+length, the last block with cells of none; cells with more have their rings stored separately, after the others.
 """
 
 from dataclasses import dataclass
@@ -27,6 +27,7 @@ from mesh.triangulation.ordering import hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.tiles.layout import LANES, MIRROR, RING, TileArrays
+from swe.tiles.rings import in_whole_blocks, places_in_blocks, ring_array, ring_size, slots_of_sides, whole_blocks
 
 CELLS_PER_TILE = 2560
 """Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
@@ -99,8 +100,9 @@ def build_tiles(
     topography: Array,
     coriolis: Array,
     gravity: float,
-    sides: Sides | None = None,
     cells_per_tile: int = CELLS_PER_TILE,
+    *,
+    sides: Sides | None = None,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
@@ -132,7 +134,7 @@ def build_tiles(
             raise InputError(
                 f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
             )
-        return build_tiles(whole, topography, coriolis, gravity, sides, cells_per_tile // 2)
+        return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2, sides=sides)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
     metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
@@ -203,7 +205,7 @@ class _Cutter:
         ringed = computed if self.sides is None else cells.known()
         around = mesh.n_edges_on_cell[ringed]
         edges.add(mesh.edges_on_cell[ringed][np.arange(mesh.max_edges) < around[:, None]])
-        slots = _slots(sides, mesh.max_edges)
+        slots = slots_of_sides(sides, mesh.max_edges)
         larger = np.flatnonzero(sides > RING)
         corners = vertices.of(mesh.vertices_on_cell[computed])
         last_corner = corners[np.arange(len(computed)), sides - 1]
@@ -223,9 +225,9 @@ class _Cutter:
                 np.stack([self._slot(own_edges, end, slots) for end in (0, 1)]),
                 _signed(round_edges, self.on_vertex[round_vertices] > 0).T,
                 cells.of(mesh.cells_on_vertex[round_vertices]).T,
-                _ring(_signed(edges.of(mesh.edges_on_cell[ringed]), self.on_cell[ringed] > 0), around, 0),
+                ring_array(_signed(edges.of(mesh.edges_on_cell[ringed]), self.on_cell[ringed] > 0), around, 0),
                 self._across(computed, sides, around),
-                _ring(corners, sides, last_corner),
+                ring_array(corners, sides, last_corner),
                 larger,
                 slots[larger, 0],
                 sides[larger],
@@ -235,10 +237,10 @@ class _Cutter:
                 lengths,
                 mesh.kite_areas_on_vertex[round_vertices].T,
                 self.planetary[round_vertices],
-                _ring(ratio, around, 0.0),
-                _ring(self.prefix[computed], sides, 0.0),
-                _in_blocks(1.0 / mesh.area_cell[ringed]),
-                _in_blocks(self.potential[computed]),
+                ring_array(ratio, around, 0.0),
+                ring_array(self.prefix[computed], sides, 0.0),
+                in_whole_blocks(1.0 / mesh.area_cell[ringed]),
+                in_whole_blocks(self.potential[computed]),
                 *self._vectors(ringed, around, ratio),
             ],
             sizes=(
@@ -247,8 +249,8 @@ class _Cutter:
                 len(lengths),
                 len(own_edges),
                 len(round_vertices),
-                _size_of_ring(sides),
-                0 if self.sides is None else _size_of_ring(around),
+                ring_size(sides),
+                0 if self.sides is None else ring_size(around),
             ),
         )
         for numbers in (cells, edges, vertices):
@@ -259,32 +261,34 @@ class _Cutter:
         """What lies across every side: the cell or, in the layout of the flux, the same side seen from there."""
         mesh, across = self.mesh, self.local_cells.of(self.mesh.cells_on_cell[computed])
         if self.sides is None:
-            return _ring(across, sides, 0)
-        slots = _slots(around, mesh.max_edges)
+            return ring_array(across, sides, 0)
+        slots = slots_of_sides(around, mesh.max_edges)
         edges = mesh.edges_on_cell[computed]
         side = np.argmax(mesh.edges_on_cell[mesh.cells_on_cell[computed]] == edges[:, :, None], axis=2)
         own = slots[: len(computed)]  # a side through which nothing flows is its own opposite
-        no_side = _places(len(computed))[:, RING - 1]
-        return _ring(np.where(self.on_cell[computed] == 0, own, slots[across, side]), sides, no_side)
+        no_side = places_in_blocks(len(computed))[:, RING - 1]
+        return ring_array(np.where(self.on_cell[computed] == 0, own, slots[across, side]), sides, no_side)
 
     def _larger_in_flux(self, larger: Index, around: Index) -> list[Index]:
         """Where the flux of the `larger` cells starts; and for all cells around, which are larger, and their sides."""
         if self.sides is None:
             return []
-        slots, all_larger = _slots(around, self.mesh.max_edges), np.flatnonzero(around > RING)
+        slots, all_larger = slots_of_sides(around, self.mesh.max_edges), np.flatnonzero(around > RING)
         return [slots[larger, 0], all_larger, slots[all_larger, 0], around[all_larger]]
 
     def _vectors(self, ringed: Index, around: Index, ratio: Array) -> list[Array]:
         """The vector to each neighbour, and where its bisector meets the middle of the side, as parts of its length."""
         if self.sides is None:
             return []
-        normal, length = self.sides.normal[ringed], self.mesh.dc_edge[self.mesh.edges_on_cell[ringed]]
+        normal, length = self.sides.normal[ringed], self.sides.distance[ringed]
         numbers = [length * normal[..., 0], length * normal[..., 1], self.sides.offset[ringed] / length]
-        rings = [_ring(np.where(ratio == 0.0, 0.0, each), around, 0.0) for each in numbers]
-        in_blocks = RING * _whole_blocks(len(ringed))
+        rings = [ring_array(np.where(ratio == 0.0, 0.0, each), around, 0.0) for each in numbers]
+        in_blocks = RING * whole_blocks(len(ringed))
         blocks = np.stack([ring[:in_blocks].reshape(-1, RING * LANES) for ring in rings], axis=1)
         ends = np.cumsum(around[around > RING])[:-1]
-        whole = [np.concatenate(parts) for parts in zip(*(np.split(ring[in_blocks:], ends) for ring in rings))]
+        whole = [
+            np.concatenate(parts) for parts in zip(*(np.split(ring[in_blocks:], ends) for ring in rings), strict=True)
+        ]
         return [np.concatenate([blocks.ravel(), *whole])]
 
     def _slot(self, edges: Index, end: int, slots: Index) -> Index:
@@ -352,54 +356,9 @@ def _area_passed(mesh: VoronoiMesh) -> Array:
     return passed
 
 
-def _size_of_ring(sides: Index) -> int:
-    """Number of places in a ring array of cells with these sides."""
-    return RING * _whole_blocks(len(sides)) + int(sides[sides > RING].sum())
-
-
 def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
     """Places of U, or of -U where not `positive`."""
     return np.where(positive, numbers, numbers + MIRROR)
-
-
-def _whole_blocks(cells: int) -> int:
-    """Number of cells with those that fill the last block."""
-    return -(-cells // LANES) * LANES
-
-
-def _in_blocks(values: Array) -> Array:
-    """Values of cells, and zeros that fill the last block."""
-    return np.pad(values, (0, _whole_blocks(len(values)) - len(values)))
-
-
-def _places(cells: int) -> Index:
-    """Place of the first `RING` sides of each cell (cells, RING) in the ring arrays."""
-    block, lane = np.divmod(np.arange(cells), LANES)
-    return (RING * block[:, None] + np.arange(RING)) * LANES + lane[:, None]
-
-
-def _slots(sides: Index, max_edges: int) -> Index:
-    """Place of every side (n, max_edges) in the ring arrays as `_ring` lays them out."""
-    larger = np.flatnonzero(sides > RING)
-    slots = _places(len(sides))[:, np.minimum(np.arange(max_edges), RING - 1)]
-    starts = RING * _whole_blocks(len(sides)) + np.concatenate([[0], np.cumsum(sides[larger])[:-1]]).astype(np.int64)
-    slots[larger] = starts[: len(larger), None] + np.minimum(np.arange(max_edges), sides[larger, None] - 1)
-    return slots
-
-
-def _ring(values: NDArray[Any], sides: Index, filler: Index | float) -> NDArray[Any]:
-    """Rings (n, max_edges) as the kernels read them: `RING` sides of every cell, then whole rings of larger cells.
-
-    `filler` (n,), or one number, fills the rings of cells with fewer sides; the cells that fill the last block have 0.
-    """
-    inside, larger = np.arange(values.shape[1]) < sides[:, None], sides > RING
-    ring = np.empty((len(sides), RING), values.dtype)
-    ring.T[:] = filler
-    for side in range(min(RING, values.shape[1])):
-        ring[inside[:, side], side] = values[inside[:, side], side]
-    blocks = np.zeros(RING * _whole_blocks(len(sides)), values.dtype)
-    blocks[_places(len(sides))] = ring
-    return np.concatenate([blocks, values[larger][inside[larger]]])
 
 
 def _packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:

@@ -5,8 +5,8 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.triangulation.ordering import inverse_order
-from swe.equations.model import ShallowWaterModel
 from swe.equations.consistent import Consistent
+from swe.equations.model import ShallowWaterModel
 from swe.equations.schemes import Ringler2010
 from swe.errors import InputError
 from swe.state import State
@@ -36,7 +36,7 @@ class FusedRungeKutta:
         if reason:
             raise InputError(f"{reason}, which the fused method lacks; take RungeKutta(model.tendency, ...)")
         sides = model.scheme.sides if isinstance(model.scheme, Consistent) else None
-        self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity, sides)
+        self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity, sides=sides)
         self.model = model
         self._scratch = _scratch(self.tiles)
         self._parts = None if sides is None else _parts_of_flux(self.tiles)
@@ -110,9 +110,7 @@ class FusedRungeKutta:
         for values in slope:
             values.fill(0.0)
         moving, at = not model.prescribed_wind, self._in_order(state)
-        tile_kernels.tendency(
-            tiles.arrays, self._scratch, self._parts, model.gravity, moving, at, slope, self._unsound
-        )
+        tile_kernels.tendency(tiles.arrays, self._scratch, self._parts, model.gravity, moving, at, slope, self._unsound)
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:

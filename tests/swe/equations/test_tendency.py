@@ -8,28 +8,37 @@ from mesh import VoronoiMesh, build_operators
 from mesh.discrete.operators import vertex_to_cell
 from swe import ShallowWaterModel, State
 from swe.equations.anticipation import Anticipation
-from swe.equations.tendency import tendency
+from swe.equations.consistent import Consistent
+from swe.equations.schemes import Ringler2010, Scheme
+from swe.equations.tendency import Energy, consistent, ringler2010, tendency
 from swe.errors import InputError
 
 GRAVITY = 9.8
 
 
-def random_setting(mesh: VoronoiMesh) -> tuple[ShallowWaterModel, State]:
+EQUATIONS: dict[type[Scheme], Energy] = {Ringler2010: ringler2010, Consistent: consistent}
+"""Kinetic energy and flux of each scheme as the plain statement has them."""
+
+
+def random_setting(mesh: VoronoiMesh, scheme: type[Scheme] = Ringler2010) -> tuple[ShallowWaterModel, State]:
     random = np.random.default_rng(4)
     model = ShallowWaterModel(
         mesh.scaled(6.4e6),
         topography=random.uniform(0.0, 500.0, mesh.n_cells),
         coriolis=random.uniform(-1e-4, 1e-4, mesh.n_vertices),
         gravity=GRAVITY,
+        scheme=scheme,
     )
     state = State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
     return model, state
 
 
+@pytest.mark.parametrize("scheme", EQUATIONS)
 @pytest.mark.parametrize("threads", [1, 2])
-def test_kernels_equal_the_equation(any_mesh: VoronoiMesh, threads: int) -> None:
-    model, state = random_setting(any_mesh)
-    expected = tendency(state, build_operators(model.mesh), model.topography, model.coriolis, GRAVITY)
+def test_kernels_equal_the_equation(any_mesh: VoronoiMesh, threads: int, scheme: type[Scheme]) -> None:
+    model, state = random_setting(any_mesh, scheme)
+    operators = build_operators(model.mesh)
+    expected = tendency(state, operators, model.topography, model.coriolis, GRAVITY, EQUATIONS[scheme])
     found = state.empty_like()
     available = numba.get_num_threads()
     numba.set_num_threads(threads)

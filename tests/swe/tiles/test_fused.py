@@ -12,18 +12,25 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
 from swe import ShallowWaterModel, Simulation, State
+from swe.equations.consistent import Consistent
+from swe.equations.schemes import Ringler2010, Scheme
 from swe.errors import InputError, RunStopped
 from swe.stepping.time_stepping import RungeKutta
 from swe.tiles import cutting as tiles
 from swe.tiles.cutting import build_tiles
 from swe.tiles.fused import FusedRungeKutta
-from swe.tiles.tile_kernels import RING
+from swe.tiles.layout import RING
 
 RADIUS = 6.4e6
 TIME_STEP = 20.0
 
 
-def random_model(mesh: VoronoiMesh, prescribed_wind: bool = False) -> tuple[ShallowWaterModel, State]:
+SCHEMES = pytest.mark.parametrize("scheme", [Ringler2010, Consistent])
+
+
+def random_model(
+    mesh: VoronoiMesh, prescribed_wind: bool = False, scheme: type[Scheme] = Ringler2010
+) -> tuple[ShallowWaterModel, State]:
     random = np.random.default_rng(5)
     model = ShallowWaterModel(
         mesh.scaled(RADIUS),
@@ -31,6 +38,7 @@ def random_model(mesh: VoronoiMesh, prescribed_wind: bool = False) -> tuple[Shal
         coriolis=random.uniform(-1e-4, 1e-4, mesh.n_vertices),
         gravity=9.8,
         prescribed_wind=prescribed_wind,
+        scheme=scheme,
     )
     state = State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
     return model, state
@@ -60,13 +68,17 @@ def assert_equal_to_round_off(model: ShallowWaterModel, state: State) -> None:
         assert np.abs(change).max() > 1e3 * tolerance
 
 
-def test_fused_step_equals_plain_step(any_mesh: VoronoiMesh) -> None:
-    assert_equal_to_round_off(*random_model(any_mesh))
+@SCHEMES
+def test_fused_step_equals_plain_step(any_mesh: VoronoiMesh, scheme: type[Scheme]) -> None:
+    assert_equal_to_round_off(*random_model(any_mesh, scheme=scheme))
 
 
-def test_fused_step_equals_plain_step_on_many_tiles(any_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
+@SCHEMES
+def test_fused_step_equals_plain_step_on_many_tiles(
+    any_mesh: VoronoiMesh, scheme: type[Scheme], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(build_tiles, "__defaults__", (60,))
-    model, state = random_model(any_mesh)
+    model, state = random_model(any_mesh, scheme=scheme)
     assert FusedRungeKutta(model).tiles.n_tiles == max(1, round(any_mesh.n_cells / 60))
     assert_equal_to_round_off(model, state)
 
@@ -78,14 +90,17 @@ def test_meshes_have_the_cells_that_the_loops_treat_apart(any_mesh: VoronoiMesh)
         assert sides.max() > RING + 2
 
 
-def test_a_mesh_in_any_numbering_gives_the_same(larger_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
+@SCHEMES
+def test_a_mesh_in_any_numbering_gives_the_same(
+    larger_mesh: VoronoiMesh, scheme: type[Scheme], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """Cells in no order at all: the tiles follow the curve, and the step puts the state into their order and back."""
     points = larger_mesh.cell_points
     shuffled = points[np.random.default_rng(2).permutation(len(points))]
     mesh = mesh_from_points(shuffled)
     monkeypatch.setattr(build_tiles, "__defaults__", (300,))
     # As in files of others: edges in another order than that of their lower cells.
-    model, state = random_model(_with_cells_shuffled(mesh))
+    model, state = random_model(_with_cells_shuffled(mesh), scheme=scheme)
     own_order = FusedRungeKutta(model).tiles
     assert own_order.cell_order is not None
     assert own_order.edge_order is not None
@@ -110,9 +125,12 @@ def _with_cells_shuffled(mesh: VoronoiMesh) -> VoronoiMesh:
     return dataclasses.replace(mesh, **changes)
 
 
-def test_results_do_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
+@SCHEMES
+def test_results_do_not_depend_on_threads(
+    larger_mesh: VoronoiMesh, scheme: type[Scheme], monkeypatch: pytest.MonkeyPatch
+) -> None:
     monkeypatch.setattr(build_tiles, "__defaults__", (100,))
-    model, start = random_model(larger_mesh)
+    model, start = random_model(larger_mesh, scheme=scheme)
     results = []
     available = numba.get_num_threads()
     for threads in (1, 2):
@@ -214,8 +232,9 @@ def test_a_stop_comes_between_steps(larger_mesh: VoronoiMesh) -> None:
     assert np.array_equal(state.normal_velocity, simulation.state.normal_velocity)
 
 
-def test_the_tendency_is_that_of_the_plain_path(any_mesh: VoronoiMesh) -> None:
-    model, state = random_model(any_mesh)
+@SCHEMES
+def test_the_tendency_is_that_of_the_plain_path(any_mesh: VoronoiMesh, scheme: type[Scheme]) -> None:
+    model, state = random_model(any_mesh, scheme=scheme)
     found, expected = state.empty_like(), state.empty_like()
     FusedRungeKutta(model).tendency(state, found)
     model.tendency(state, expected)
