@@ -44,6 +44,9 @@ MARKERS = "osD^vP*X"
 SHORT_AXIS = 30.0
 """Logarithmic axes that span less than this ratio have labels at 1, 2 and 5 times powers of ten."""
 
+LONG_LABEL = 34
+"""Four labels of this many letters do not fit side by side below the narrowest figure."""
+
 
 def error_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """Solution errors against the distance of cells, a line a family and scheme, with slopes of orders 1 and 2."""
@@ -155,7 +158,8 @@ def _draw_families(axes: Axes, rows: Sequence[StudyRow], name: str) -> None:
         )
     if len(schemes) > 1:
         for scheme in schemes:
-            axes.plot([], [], color="black", marker="o", markersize=5, label=scheme, **_style(scheme, schemes))
+            look = {"marker": "o", "markersize": 5, "linewidth": 1.0, **_style(scheme, schemes)}
+            axes.plot([], [], color="black", label=scheme, **look)
     _slope_guides(axes, rows, name)
     _logarithmic_ordinate(axes)
     _logarithmic_abscissa(axes, [row["spacing_km"] for row in rows])
@@ -197,4 +201,5 @@ def _finish(figure: Figure, grid: Sequence[Axes], heading: str) -> None:
 
 def _legend_below(figure: Figure, axes: Axes) -> None:
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=8)
+    columns = 4 if max(map(len, labels), default=0) < LONG_LABEL else 2
+    figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=8)
