@@ -32,7 +32,7 @@ TABLE_DAYS = {50.0: 10.0, 5.0: 16.0}
 """Depths, m, and the day on which the table has the departure."""
 
 DISSIPATIONS = (0.0, 1e16)
-"""Coefficients, m4/s; the second damps what the mesh just resolves in some hours."""
+"""Coefficients, m4/s; the second damps the shortest waves, of two cells, within 15 hours."""
 
 DAYS = 40.0
 ROWS_PER_DAY = 2
