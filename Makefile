@@ -6,6 +6,7 @@ CELLS := 40962
 RUN := runs/tc5
 STUDY := runs/verification
 GALEWSKY_CELLS := 2562 10242 40962 163842
+SCHEMES := --scheme ringler2010 --scheme consistent
 MUTANTS := 200
 SEED := 1
 
@@ -53,14 +54,17 @@ $(VENV)/installed-dev: pyproject.toml $(VENV)/installed
 	touch $@
 
 verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%.done)  ## All of docs/verification.md; hours
-	$(BIN)/trisk study mesh williamson2 --cells 2562 --cells 10242 --cells 40962 -o $(STUDY)/williamson2
-	$(BIN)/trisk study mesh williamson5 --cells 2562 --cells 10242 --cells 40962 --family scvt --family refined-circle \
-		--family nested --days 50 --error-day 15 -o $(STUDY)/williamson5
-	$(BIN)/trisk study mesh williamson6 --cells 2562 --cells 10242 --family scvt -o $(STUDY)/williamson6
+	$(BIN)/trisk study mesh williamson2 $(SCHEMES) --cells 2562 --cells 10242 --cells 40962 \
+		-o $(STUDY)/williamson2
+	$(BIN)/trisk study mesh williamson5 $(SCHEMES) --cells 2562 --cells 10242 --cells 40962 --family scvt \
+		--family refined-circle --family nested --days 50 --error-day 15 -o $(STUDY)/williamson5
+	$(BIN)/trisk study mesh williamson6 $(SCHEMES) --cells 2562 --cells 10242 --family scvt \
+		-o $(STUDY)/williamson6
 	$(BIN)/trisk study mesh galewsky $(GALEWSKY_CELLS:%=--cells %) --family scvt -o $(STUDY)/galewsky
 	$(BIN)/trisk study time williamson5 --cells 2562 --dt 150 --dt 300 --dt 600 --dt 1200 -o $(STUDY)/time
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/galewsky/runs/scvt-%) -o $(STUDY)/galewsky/maps
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/jet-%) $(foreach day,1 2 3 4 5 6,--day $(day)) -o $(STUDY)/jet
+	$(BIN)/python docs/tools/hollingsworth_page.py $(STUDY)/hollingsworth
 	$(BIN)/trisk spectra $(STUDY)/williamson5/runs/scvt-40962 --day 15 --day 50 -o $(STUDY)/spectra
 
 $(STUDY)/jet-%.done: runs/mesh.%.nc

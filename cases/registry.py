@@ -5,13 +5,15 @@ from collections.abc import Mapping
 from cases.base import Case
 from cases.case_file import is_address, load_case
 from cases.galewsky import Galewsky
+from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
 from cases.parameters import Value, with_parameters
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 from swe.errors import InputError
 
 CASES: dict[str, type[Case]] = {
-    case.name: case for case in (Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest)
+    case.name: case
+    for case in (Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest, Hollingsworth)
 }
 
 

@@ -110,11 +110,31 @@ def _turned(point: Array, axis: Array, angle: float) -> Array:
 
 
 @dataclass(frozen=True)
-class Williamson2(SolidRotation):
+class BalancedRotation(SolidRotation):
+    """Solid-body rotation with a Coriolis parameter about the same axis, in balance with the height of the surface.
+
+    The flow is steady, and its own exact solution: equations (90) to (96) of the paper.
+    """
+
+    @property
+    def has_exact_solution(self) -> bool:
+        """Yes: nothing changes."""
+        return True
+
+    def coriolis(self, longitude: Array, latitude: Array) -> Array:
+        """Equation (96)."""
+        return 2.0 * self.rotation_rate * self._sine_of_turned_latitude(longitude, latitude)
+
+    def _drop_to_the_poles(self) -> float:
+        """How much lower the surface is at the poles of the rotation than at its equator, m: equation (95)."""
+        return (self.radius * self.rotation_rate * self.wind_speed + 0.5 * self.wind_speed**2) / self.gravity
+
+
+@dataclass(frozen=True)
+class Williamson2(BalancedRotation):
     """Global steady-state nonlinear zonal geostrophic flow (test case 2), which is its own exact solution.
 
-    Solid-body rotation with a Coriolis parameter about the same axis, balanced by the pressure gradient: equations
-    (90) to (96) of the paper.
+    The layer carries the balance, over a flat bottom.
     """
 
     name: ClassVar[str] = "williamson2"
@@ -125,19 +145,10 @@ class Williamson2(SolidRotation):
 
     reference_depth: float = parameter(2.94e4 / GRAVITY, "m", "Depth h0 at the equator of the rotation")
 
-    @property
-    def has_exact_solution(self) -> bool:
-        """Yes: nothing changes."""
-        return True
-
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Equation (95)."""
-        drop = self.radius * self.rotation_rate * self.wind_speed + 0.5 * self.wind_speed**2
-        return self.reference_depth - drop / self.gravity * self._sine_of_turned_latitude(longitude, latitude) ** 2
-
-    def coriolis(self, longitude: Array, latitude: Array) -> Array:
-        """Equation (96)."""
-        return 2.0 * self.rotation_rate * self._sine_of_turned_latitude(longitude, latitude)
+        sine = self._sine_of_turned_latitude(longitude, latitude)
+        return self.reference_depth - self._drop_to_the_poles() * sine**2
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,8 @@ _PLACES = {
     ),
     "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
     "cases": (
-        *("CASES", "Case", "Galewsky", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5", "Williamson6"),
-        *("find_case", "parameter"),
+        *("CASES", "Case", "Galewsky", "Hollingsworth", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5"),
+        *("Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),
 }

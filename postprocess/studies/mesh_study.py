@@ -1,9 +1,11 @@
 """The same case over families and sizes of meshes: their quality beside truncation and solution errors.
 
-A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh and one run for each family and size, and
-`study.csv` one row for each. What is there and fits is not made again, so a study that was interrupted goes on.
+A study is a folder: `meshes/` and `runs/` hold what it is made of, one mesh for each family and size and one run
+for each scheme on it, and `study.csv` one row for each run. What is there and fits is not made again, so a study that
+was interrupted goes on.
 """
 
+from collections.abc import Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -22,7 +24,9 @@ from postprocess.compare.truncation import truncation_errors
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
 from postprocess.studies.families import FAMILIES
+from postprocess.studies.lines import run_name
 from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, StudyRow, Task, Tell, require_days, write_table
+from swe.configuration import Options, SchemeName
 from swe.errors import InputError
 
 LEAST_CELLS, LARGEST_CELLS = 162, 655362
@@ -32,7 +36,8 @@ LEAST_CELLS, LARGEST_CELLS = 162, 655362
 class Plan:
     """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
 
-    Raises `InputError` if a family is unknown or a number of cells is not that of a bisected icosahedron.
+    Each of the `schemes` runs on the same meshes. Raises `InputError` if a family is unknown or a number of cells is
+    not that of a bisected icosahedron.
     """
 
     folder: Path
@@ -41,6 +46,7 @@ class Plan:
     error_day: float
     families: tuple[str, ...]
     cells: tuple[int, ...]
+    schemes: tuple[SchemeName, ...] = (Options.scheme,)
 
     def __post_init__(self) -> None:
         for family in self.families:
@@ -62,9 +68,10 @@ class Plan:
 
 @dataclass(frozen=True)
 class Member:
-    """One mesh of a study, its run (None if that failed) and its comparison (None if there is no solution)."""
+    """One mesh and scheme of a study, the run (None if it failed) and its comparison (None if there is no solution)."""
 
     family: str
+    scheme: SchemeName
     requested_cells: int
     mesh: VoronoiMesh
     run: Run | None
@@ -85,20 +92,24 @@ def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], lis
     for cells in sorted(set(plan.cells)):
         finest = []  # those of coarser meshes are let go, they would fill the memory
         for family in dict.fromkeys(plan.families):
-            finest.append(_member(plan, family, cells, progress, tell))
-            rows.append(row_of(finest[-1], plan.error_day))
-            write_table(rows, plan.folder / TABLE_FILE)
+            for member in _members(plan, family, cells, progress, tell):
+                finest.append(member)
+                rows.append(row_of(member, plan.error_day))
+                write_table(rows, plan.folder / TABLE_FILE)
     return finest, rows
 
 
-def _member(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Member:
-    """Read or make one mesh and its run."""
+def _members(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Iterator[Member]:
+    """Read or make one mesh, and the run of each scheme on it."""
     name = f"{family}-{cells}"
     mesh = _mesh(plan.folder / "meshes" / f"{name}.nc", family, cells, tell)
-    task = Task(plan.folder / "runs" / name, plan.case, mesh, plan.days, plan.error_day)
-    run, failure = task.carry_out(progress, tell)
-    comparison = None if run is None else _comparison(run, plan.error_day, tell)
-    return Member(family, cells, mesh.scaled(plan.case.radius) if run is None else run.mesh, run, comparison, failure)
+    for scheme in dict.fromkeys(plan.schemes):
+        folder = plan.folder / "runs" / run_name(name, scheme)
+        task = Task(folder, plan.case, mesh, plan.days, plan.error_day, scheme=scheme)
+        run, failure = task.carry_out(progress, tell)
+        comparison = None if run is None else _comparison(run, plan.error_day, tell)
+        used = mesh.scaled(plan.case.radius) if run is None else run.mesh
+        yield Member(family, scheme, cells, used, run, comparison, failure)
 
 
 def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
@@ -133,11 +144,12 @@ def row_of(member: Member, error_day: float) -> StudyRow:
     """The line of a member: the mesh, its quality, truncation errors, solution errors and conservation."""
     row: StudyRow = {
         "family": member.family,
+        "scheme": member.scheme,
         "requested_cells": member.requested_cells,
         "spacing_km": member.spacing,
         **asdict(mesh_quality(member.mesh)),
     }
-    for operator, norms in asdict(truncation_errors(member.mesh)).items():
+    for operator, norms in asdict(truncation_errors(member.mesh, member.scheme)).items():
         row |= {f"truncation_{operator}_{name}": norms[name] for name in ("l2", "linf")}
     row["failure"] = member.failure
     if member.comparison is not None:

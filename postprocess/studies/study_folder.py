@@ -15,8 +15,10 @@ from mesh.plain import recorded
 from mesh.safe_files import written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs.reading import Run, read_run
+from swe.configuration import Options, SchemeName
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError, RunError
+from swe.output.description import ABSENT_CONFIGURATION
 from swe.output.files import load_record
 from swe.run.simulation import Simulation
 
@@ -55,6 +57,7 @@ class Task:
     days: float
     snapshot_days: float
     time_step: float | None = None
+    scheme: SchemeName = Options.scheme
 
     def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
         """The run, made unless it is there already; or None and the reason why it failed."""
@@ -84,6 +87,7 @@ class Task:
             self.directory,
             time_step=self.time_step,
             snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
+            scheme=self.scheme,
             resume=resume,
             overwrite=not resume,
         )
@@ -100,7 +104,7 @@ class Task:
     def _is_recorded(self) -> bool:
         try:
             record = load_record(self.directory)
-            configuration = record["configuration"]
+            configuration = ABSENT_CONFIGURATION | record["configuration"]
             return bool(
                 record["status"] == "completed"
                 and record["case"] == self.case.name
@@ -108,6 +112,7 @@ class Task:
                 and record["days"] == self.days
                 and configuration["snapshot_interval"] == self.snapshot_days * SECONDS_PER_DAY
                 and configuration["sampling"] == "point"
+                and configuration["scheme"] == self.scheme
                 and self.time_step in (None, configuration["time_step"])
                 and record["mesh_hash"] == mesh_hash(self.mesh.scaled(self.case.radius))
             )

@@ -13,6 +13,7 @@ from mesh.geometry.sphere import normalize
 from postprocess.figures.maps import CENTRAL_LONGITUDE, add_polygons, draw_mollweide
 from postprocess.figures.patches import cell_patches
 from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
+from postprocess.studies.lines import named
 from postprocess.studies.mesh_study import Member, thickness_error
 
 IRREGULAR_COLOURS = {5: "black", 7: "magenta"}
@@ -35,19 +36,19 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     """
     figure, panels = _panel_for_each(members, 2, (6.4, 3.9))
     for axes, member in panels:
-        _colour_bar(figure, draw_error_map(axes, member, day))
+        _colour_bar(figure, draw_error_map(axes, member, day, _name(member, members)))
     figure.suptitle(heading)
     return figure
 
 
-def draw_error_map(axes: Axes, member: Member, day: float) -> Axes:
-    """Draw one map of `map_figure`."""
+def draw_error_map(axes: Axes, member: Member, day: float, name: str) -> Axes:
+    """Draw one map of `map_figure`, of the member of this name."""
     error = thickness_error(member, day)
     draw_mollweide(axes, member.mesh, error, _colours(error))
     _mark_irregular_cells(axes, member)
     worst = int(np.argmax(np.abs(error)))
     axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
-    axes.set_title(f"{member.family}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9)
+    axes.set_title(f"{name}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9)
     return axes
 
 
@@ -55,13 +56,13 @@ def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figur
     """The error of thickness round the worst cell of each mesh, with the number of sides of irregular cells."""
     figure, panels = _panel_for_each(members, 4, (3.2, 4.2))
     for axes, member in panels:
-        _colour_bar(figure, draw_closeup(axes, member, day))
+        _colour_bar(figure, draw_closeup(axes, member, day, _name(member, members)))
     figure.suptitle(heading)
     return figure
 
 
-def draw_closeup(axes: Axes, member: Member, day: float) -> Axes:
-    """Draw one panel of `closeup_figure`."""
+def draw_closeup(axes: Axes, member: Member, day: float, name: str) -> Axes:
+    """Draw one panel of `closeup_figure`, of the member of this name."""
     mesh, error = member.mesh, thickness_error(member, day)
     worst = int(np.argmax(np.abs(error)))
     view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
@@ -74,13 +75,17 @@ def draw_closeup(axes: Axes, member: Member, day: float) -> Axes:
         x, y, _ = flat[cell]
         axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=7, clip_on=True)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
-    axes.set_title(f"{member.family}\n{place_in_words(*np.degrees(view))}", fontsize=9)
+    axes.set_title(f"{name}\n{place_in_words(*np.degrees(view))}", fontsize=9)
     return axes
 
 
 def place_in_words(longitude: float, latitude: float) -> str:
     """Longitude and latitude, degrees, to a tenth."""
     return f"{longitude:.1f}°E {abs(latitude):.1f}°{'N' if latitude >= 0.0 else 'S'}"
+
+
+def _name(member: Member, members: Sequence[Member]) -> str:
+    return named(member.family, member.scheme, [each.scheme for each in members])
 
 
 def _panel_for_each(

@@ -12,6 +12,7 @@ from PIL import Image
 
 from mesh.discrete.quality import Quality
 from mesh.safe_files import written_aside
+from postprocess.studies.lines import lines_of, named, schemes_of, to_be_named
 from postprocess.studies.mesh_study import Member, Plan
 from postprocess.studies.study_figures import (
     ERRORS,
@@ -23,7 +24,7 @@ from postprocess.studies.study_figures import (
 )
 from postprocess.studies.study_folder import CONSERVATION, StudyRow, fitted_order
 from postprocess.studies.study_maps import closeup_figure, map_figure, place_in_words
-from postprocess.studies.time_study import DRAWN, TimePlan, orders, time_figure
+from postprocess.studies.time_study import DRAWN, TimePlan, by_scheme, orders, time_figure
 
 REPORT_FILE = "report.html"
 FIGURES_FOLDER = "figures"
@@ -117,10 +118,10 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Study
 def write_time_report(plan: TimePlan, rows: Sequence[StudyRow], arguments: Sequence[str]) -> Path:
     """Draw the figure of a study of time steps and write its report; return the path of the report."""
     heading = f"{plan.case.title}, {plan.mesh.n_cells} cells, day {plan.days:g}"
-    fitted = orders(rows)
+    fitted = [{"scheme": scheme, **orders(line)} for scheme, line in by_scheme(rows).items()]
     sections = {
         "Time steps": _table(rows, TIME_COLUMNS),
-        "Fitted orders": _table([dict(fitted)], DRAWN),
+        "Fitted orders": _table(fitted, DRAWN),
     }
     text = f"{heading}. Differences are those from the run with the shortest step."
     figures = {"time_steps": time_figure(rows, heading)}
@@ -128,28 +129,28 @@ def write_time_report(plan: TimePlan, rows: Sequence[StudyRow], arguments: Seque
 
 
 def _order_rows(rows: Sequence[StudyRow]) -> list[StudyRow]:
-    """Fitted order of each error by family, where a family has two sizes or more."""
+    """Fitted order of each error by family and scheme, where there are two sizes or more."""
     fitted: list[StudyRow] = []
-    for family in dict.fromkeys(row["family"] for row in rows):
-        ours = [row for row in rows if row["family"] == family]
+    for (family, scheme), ours in lines_of(rows).items():
         spacing = [float(row["spacing_km"]) for row in ours]
         if len(ours) > 1:
             orders_of = {name: fitted_order(spacing, [float(row.get(name, 0.0)) for row in ours]) for name in ERRORS}
-            fitted.append({"family": family, **orders_of})
+            fitted.append({"family": family, "scheme": scheme, **orders_of})
     return fitted
 
 
 def _stalling(rows: Sequence[StudyRow]) -> list[str]:
-    """A sentence for each family whose largest error of thickness no longer falls with its l2 norm."""
+    """A sentence for each family and scheme whose largest error of thickness no longer falls with its l2 norm."""
     sentences = []
-    for family in dict.fromkeys(row["family"] for row in rows):
-        last = [row for row in rows if row["family"] == family][-2:]
+    for (family, scheme), line in lines_of(rows).items():
+        last = line[-2:]
         spacing = [row["spacing_km"] for row in last]
         l2, linf = (fitted_order(spacing, [row[f"thickness_{norm}"] for row in last]) for norm in ("l2", "linf"))
         if l2 - linf > STALLING:
             worst = last[-1]
             sentences.append(
-                f"On {family}, l∞ of thickness stalls between {last[0]['cells']} and {worst['cells']} cells at "
+                f"On {named(family, scheme, schemes_of(rows))}, l∞ of thickness stalls between {last[0]['cells']} and "
+                f"{worst['cells']} cells at "
                 f"{worst['thickness_linf']:.2g} (order {linf:.2f}, of l2 {l2:.2f}): the worst cell, at "
                 f"{place_in_words(worst['worst_longitude'], worst['worst_latitude'])}, is "
                 f"{worst['worst_to_irregular']:.1f} mean distances from the nearest cell that is no hexagon."
@@ -158,7 +159,10 @@ def _stalling(rows: Sequence[StudyRow]) -> list[str]:
 
 
 def _table(rows: Sequence[StudyRow], columns: Columns) -> str:
-    """An HTML table of those columns that any row has."""
+    """An HTML table of those columns that any row has; schemes where they are to be named, beside the first column."""
+    if to_be_named(schemes_of(rows)):
+        first, *others = columns.items()
+        columns = dict([first, ("scheme", "scheme"), *others])
     shown = {name: title for name, title in columns.items() if any(row.get(name, "") != "" for row in rows)}
     head = "".join(f"<th>{html.escape(title)}</th>" for title in shown.values())
     body = "".join(

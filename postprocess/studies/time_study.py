@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from cases.base import Case
@@ -13,6 +14,7 @@ from postprocess.compare.comparison import fields_of
 from postprocess.compare.norms import scalar_norms, vector_norms
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
+from postprocess.studies.lines import STYLES, heading_with, run_name, schemes_of
 from postprocess.studies.study_folder import (
     CONSERVATION,
     TABLE_FILE,
@@ -23,6 +25,7 @@ from postprocess.studies.study_folder import (
     require_days,
     write_table,
 )
+from swe.configuration import Options, SchemeName
 from swe.errors import InputError
 
 ORDER_OF_ENERGY_DRIFT = 5
@@ -41,13 +44,17 @@ LEAST_TIME_STEP, LARGEST_TIME_STEP = 1e-3, 1e6
 
 @dataclass(frozen=True)
 class TimePlan:
-    """Runs of `case` on `mesh` for `days` with each of `time_steps`, s; raises `InputError` for fewer than two."""
+    """Runs of `case` on `mesh` for `days` with each of `time_steps`, s, and of `schemes`.
+
+    Raises `InputError` for fewer than two steps.
+    """
 
     folder: Path
     case: Case
     mesh: VoronoiMesh
     days: float
     time_steps: tuple[float, ...]
+    schemes: tuple[SchemeName, ...] = (Options.scheme,)
 
     def __post_init__(self) -> None:
         require_days(self.days)
@@ -64,21 +71,21 @@ def carry_out(plan: TimePlan, progress: bool, tell: Tell) -> list[StudyRow]:
     """Make the runs that are missing, the shortest step first, and write the table; return its rows."""
     prepared_folder(plan.folder)
     rows: list[StudyRow] = []
-    finest: Run | None = None
+    finest: dict[str, Run] = {}
     for time_step in sorted(set(plan.time_steps)):
-        directory = plan.folder / "runs" / f"dt-{time_step!r}"
-        task = Task(directory, plan.case, plan.mesh, plan.days, plan.days, time_step)
-        run, failure = task.carry_out(progress, tell)
-        finest = run if finest is None else finest
-        rows.append({"time_step_s": time_step, "failure": failure})
-        if run is not None and finest is not None:
-            rows[-1] |= _measured(run, finest, plan.days)
-        write_table(rows, plan.folder / TABLE_FILE)
+        for scheme in dict.fromkeys(plan.schemes):
+            directory = plan.folder / "runs" / run_name(f"dt-{time_step!r}", scheme)
+            task = Task(directory, plan.case, plan.mesh, plan.days, plan.days, time_step, scheme)
+            run, failure = task.carry_out(progress, tell)
+            rows.append({"time_step_s": time_step, "scheme": scheme, "failure": failure})
+            if run is not None:
+                rows[-1] |= _measured(run, finest.setdefault(scheme, run), plan.days)
+            write_table(rows, plan.folder / TABLE_FILE)
     return rows
 
 
 def _measured(run: Run, finest: Run, day: float) -> StudyRow:
-    """Conservation at the end, and the difference from the run with the shortest step (which has none)."""
+    """Conservation at the end, and the difference from the scheme's run with the shortest step (which has none)."""
     row: StudyRow = {"steps": run.steps, "courant_number": float(run.series["courant_number"].max())}
     row |= {name: float(run.series[name][-1]) for name in CONSERVATION}
     if run is finest:
@@ -89,8 +96,13 @@ def _measured(run: Run, finest: Run, day: float) -> StudyRow:
     return row
 
 
+def by_scheme(rows: Sequence[StudyRow]) -> dict[str, list[StudyRow]]:
+    """Rows of each scheme."""
+    return {scheme: [row for row in rows if row["scheme"] == scheme] for scheme in schemes_of(rows)}
+
+
 def orders(rows: Sequence[StudyRow]) -> dict[str, float]:
-    """Fitted order of every drawn quantity in the time step."""
+    """Fitted order of every drawn quantity in the time step, for the rows of one scheme."""
     fitted = {}
     for name in DRAWN:
         present = [(float(row["time_step_s"]), abs(float(row[name]))) for row in rows if name in row]
@@ -102,19 +114,28 @@ def time_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
     """Energy drift and time stepping error against the time step, with the slopes of fourth and fifth order."""
     figure = Figure(figsize=(8.0, 5.5), layout="constrained")
     axes = figure.subplots()
-    fitted = orders(rows)
-    for name, label in DRAWN.items():
-        present = [row for row in rows if row.get(name)]
-        steps, values = [row["time_step_s"] for row in present], [abs(float(row[name])) for row in present]
-        (line,) = axes.loglog(steps, values, "o-", label=f"{label}: order {fitted[name]:.2f}")
-        if len(steps) > 1:
-            order = ORDER_OF_ENERGY_DRIFT if "energy" in name else ORDER_OF_ENERGY_DRIFT - 1
-            x = np.array([min(steps), max(steps)], float)
-            guide = 0.6 * values[-1] * (x / x[1]) ** order
-            axes.loglog(x, guide, "--", color=line.get_color(), alpha=0.5, label=f"slope {order}")
+    schemes = schemes_of(rows)
+    for number, scheme in enumerate(schemes):
+        ours = by_scheme(rows)[scheme]
+        fitted = orders(ours)
+        for colour, (name, label) in enumerate(DRAWN.items()):
+            present = [row for row in ours if row.get(name)]
+            steps, values = [row["time_step_s"] for row in present], [abs(float(row[name])) for row in present]
+            label = f"{label}, {scheme}" if len(schemes) > 1 else label
+            look = {"marker": "o", "color": f"C{colour}", **STYLES[number % len(STYLES)]}
+            axes.loglog(steps, values, label=f"{label}: order {fitted[name]:.2f}", **look)
+            if number == 0 and len(steps) > 1:
+                _slope_guide(axes, steps, values, name, f"C{colour}")
     axes.set_xlabel("time step (s)")
     axes.set_ylabel("relative change or error")
     axes.grid(alpha=0.3, which="both")
     axes.legend(fontsize=8)
-    figure.suptitle(heading)
+    figure.suptitle(heading_with(heading, schemes))
     return figure
+
+
+def _slope_guide(axes: Axes, steps: Sequence[float], values: Sequence[float], name: str, colour: str) -> None:
+    """The slope that the order of Runge-Kutta has, a little below the line."""
+    order = ORDER_OF_ENERGY_DRIFT if "energy" in name else ORDER_OF_ENERGY_DRIFT - 1
+    x = np.array([min(steps), max(steps)], float)
+    axes.loglog(x, 0.6 * values[-1] * (x / x[1]) ** order, "--", color=colour, alpha=0.5, label=f"slope {order}")

@@ -45,6 +45,7 @@ PARAMETERS = {
         "bump_length": (0.06666666666666667, "rad"),
     },
     "lake-at-rest": {**MOUNTAIN, "surface_height": (5960.0, "m")},
+    "hollingsworth": {**ROTATION, "depth": (50.0, "m")},
 }
 """Default and unit of every parameter; Williamson et al. (1992), Galewsky et al. (2004)."""
 
@@ -55,6 +56,7 @@ DECLARED = {
     "williamson6": (14.0, None, False, False),
     "galewsky": (6.0, None, False, False),
     "lake-at-rest": (5.0, None, True, False),
+    "hollingsworth": (20.0, None, True, False),
 }
 """Days of the paper, accepted order, whether the solution is known, whether the wind is prescribed."""
 

@@ -74,7 +74,15 @@ def test_help_at_every_level(trisk) -> None:
 def test_cases_are_listed_with_their_parameters(trisk) -> None:
     code, out, _ = trisk("cases")
     assert code == 0
-    for name in ("williamson1", "williamson2", "williamson5", "williamson6", "galewsky", "lake-at-rest"):
+    for name in (
+        "williamson1",
+        "williamson2",
+        "williamson5",
+        "williamson6",
+        "galewsky",
+        "lake-at-rest",
+        "hollingsworth",
+    ):
         assert name in out
     code, out, _ = trisk("cases", "williamson6")
     assert code == 0

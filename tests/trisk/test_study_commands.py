@@ -32,11 +32,25 @@ def test_study_of_time_steps(trisk: Call, tmp_path: Path) -> None:
     assert (code, out) == (0, f"{tmp_path / 'study' / 'report.html'}\n")
 
 
+def test_studies_of_both_schemes(trisk: Call, tmp_path: Path) -> None:
+    schemes = ("--scheme", "ringler2010", "--scheme", "consistent")
+    options = ("--family", "scvt", "--cells", 162, "--days", 0.25)
+    code, out, _ = trisk("study", "mesh", "williamson2", *options, *schemes, "-o", tmp_path / "meshes")
+    assert code == 0
+    assert "scvt-162-consistent: williamson2 to day 0.25" in out
+    steps = ("--cells", 42, "--days", 0.5, "--dt", 1800, "--dt", 3600)
+    code, out, _ = trisk("study", "time", "williamson5", *steps, *schemes[2:], "-o", tmp_path / "times")
+    assert code == 0
+    assert "dt-1800.0-consistent: williamson5 to day 0.5" in out
+    assert "dt-1800.0: " not in out
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (("mesh", "williamson2", "--family", "squares"), "no family of meshes named 'squares'"),
         (("mesh", "williamson2", "--cells", "100"), "100 cells are no bisected icosahedron"),
+        (("mesh", "williamson2", "--scheme", "exact"), "no scheme named 'exact'; choose among ringler2010, consistent"),
         (("mesh", "williamson2", "--error-day", "9"), "cannot be taken on day 9 of a run of 5 days"),
         (("mesh", "williamson3"), "no case named 'williamson3'"),
         (("time", "williamson5", "--cells", "42", "--dt", "600"), "at least two"),

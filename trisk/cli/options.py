@@ -14,11 +14,14 @@ Settings = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="NAME=VALUE", help="Set a parameter of the case, such as angle=pi/2; repeatable."),
 ]
-Scheme = Annotated[
-    Literal["ringler2010", "consistent"],
+SCHEME_HELP = "ringler2010, that of the published results, or consistent, whose errors stay small on irregular meshes."
+Scheme = Annotated[Literal["ringler2010", "consistent"], typer.Option("--scheme", help=SCHEME_HELP)]
+Schemes = Annotated[
+    list[str] | None,
     typer.Option(
         "--scheme",
-        help="ringler2010, that of the published results, or consistent, whose errors stay small on irregular meshes.",
+        metavar="[ringler2010|consistent]",
+        help=f"{SCHEME_HELP} Repeatable, for runs of both side by side; by default ringler2010.",
     ),
 ]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from trisk.cli.options import CaseName, Quiet, Recompute, Settings
+from trisk.cli.options import CaseName, Quiet, Recompute, Schemes, Settings
 
 app = typer.Typer(
     help="Study how meshes or time steps turn into errors. An interrupted study continues where it stopped."
@@ -33,6 +33,7 @@ def mesh(
     error_day: Annotated[
         float | None, typer.Option("--error-day", help="Day at which errors are taken; by default the last.")
     ] = None,
+    schemes: Schemes = None,
     settings: Settings = None,
     quiet: Quiet = False,
 ) -> None:
@@ -43,6 +44,7 @@ def mesh(
     from cases import find_case
     from cases.parameters import split_settings
     from postprocess.studies.families import FAMILIES
+    from postprocess.studies.lines import chosen_schemes
     from postprocess.studies.mesh_study import Plan, carry_out
     from postprocess.studies.study_report import write_mesh_report
 
@@ -55,6 +57,7 @@ def mesh(
         days if error_day is None else error_day,
         tuple(families or FAMILIES),
         tuple(cells or (642, 2562, 10242)),
+        chosen_schemes(schemes),
     )
     tell = _teller(quiet)
     finest, rows = carry_out(plan, not quiet, tell)
@@ -71,6 +74,7 @@ def time(
     days: Annotated[
         float | None, typer.Option("--days", help="Simulated days; by default what the paper recommends.")
     ] = None,
+    schemes: Schemes = None,
     settings: Settings = None,
     recompute_metrics: Recompute = False,
     quiet: Quiet = False,
@@ -81,13 +85,15 @@ def time(
     """
     from cases import find_case
     from cases.parameters import split_settings
+    from postprocess.studies.lines import chosen_schemes
     from postprocess.studies.study_report import write_time_report
     from postprocess.studies.time_study import TimePlan, carry_out
     from trisk.arguments.meshes import chosen_mesh
 
     chosen = find_case(case, split_settings(settings or ()))
     used = chosen_mesh(mesh_file, cells, recompute_metrics, quiet)
-    plan = TimePlan(output, chosen, used, chosen.recommended_days if days is None else days, tuple(time_steps))
+    days = chosen.recommended_days if days is None else days
+    plan = TimePlan(output, chosen, used, days, tuple(time_steps), chosen_schemes(schemes))
     tell = _teller(quiet)
     rows = carry_out(plan, not quiet, tell)
     tell(str(write_time_report(plan, rows, ["trisk", *sys.argv[1:]])))
