@@ -79,7 +79,7 @@ def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dic
         "case": description["case"],
         "parameters": json.dumps(description["parameters"]),
         "mesh_hash": description["mesh_hash"],
-        "scheme": model.scheme.source,
+        "scheme": f"{model.scheme.name}: {model.scheme.source}",
         **{name: value for name, value in description["configuration"].items() if name != "scheme"},
         "trisk_version": package_versions()["trisk"],
     }
