@@ -8,32 +8,34 @@ from mesh.discrete.walls import closed_mesh
 from swe.configuration import Configuration, Options
 from swe.equations.anticipation import Anticipation
 from swe.equations.dissipation import BiharmonicDissipation
-from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, courant_number
+from swe.equations.model import ShallowWaterModel, courant_number
 from swe.equations.soundness import warning_of_vertices
 from swe.equations.terms import Term
 from swe.errors import InputError
+from swe.integrators import STEPPINGS, Integrator
 from swe.run.case import CaseFields
 from swe.stepping.schedule import dividing_step
 
-DEFAULT_COURANT_NUMBER = 0.8
-"""Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
-
 
 def default_time_step(start: CaseFields, options: Options) -> float:
-    """Largest step, s, up to the default Courant number that divides the shorter output interval."""
+    """Largest step, s, up to the integrator's default Courant number that divides the shorter output interval."""
     case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
     per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
     if not np.isfinite(per_second):
         raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
+    courant = STEPPINGS[options.integrator].default_courant_number
     # Where nothing moves, under a prescribed wind of zero, any step will do.
-    return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
+    return dividing_step(courant / per_second, interval) if per_second > 0.0 else interval
 
 
-def require_keeping_energy(integrator: str, terms: Sequence[Term]) -> None:
+def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> None:
     """Raise `InputError` if relaxation would undo what terms in the stages do to energy."""
     changing = [term.name for term in terms if "total_energy" in term.changes and not term.after_steps]
-    if integrator == "rrk4" and changing:
-        raise InputError(f"rrk4 keeps total energy, which the term {changing[0]} changes; take the integrator rk4")
+    if STEPPINGS[integrator].relaxed and changing:
+        raise InputError(
+            f"{integrator} keeps total energy, which the term {changing[0]} changes; take the integrator "
+            f"{integrator.removeprefix('r')}"
+        )
 
 
 def build_model(start: CaseFields, configuration: Configuration) -> ShallowWaterModel:
@@ -55,7 +57,7 @@ def warnings_before(
 ) -> Iterator[str]:
     """What is likely to go wrong during a run, in sentences."""
     time_step = configuration.time_step
-    waves = time_step * STABLE_COURANT_NUMBER / max(initial_courant_number, 1e-300)
+    waves = time_step * STEPPINGS[configuration.integrator].stable_courant_number / max(initial_courant_number, 1e-300)
     damping = min(
         (term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)),
         default=float("inf"),
