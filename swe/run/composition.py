@@ -1,4 +1,4 @@
-"""From the fields of a case and the options of a run to the model: time step, terms and warnings."""
+"""From the fields of a case and the options of a run to the model: time step, terms, method and warnings."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,7 +14,12 @@ from swe.equations.terms import Term
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
 from swe.run.case import CaseFields
+from swe.state import State
+from swe.stepping.forward_backward import ForwardBackward
 from swe.stepping.schedule import dividing_step
+from swe.stepping.time_stepping import RungeKutta
+from swe.tiles.forward_backward import FusedForwardBackward
+from swe.tiles.fused import FusedMethod, FusedRungeKutta
 
 
 def default_time_step(start: CaseFields, options: Options) -> float:
@@ -50,6 +55,19 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
     return ShallowWaterModel(
         start.mesh, start.topography, start.coriolis, case.gravity, case.prescribed_wind, terms=terms
     )
+
+
+def plain_method(model: ShallowWaterModel, state: State, integrator: Integrator) -> RungeKutta | ForwardBackward:
+    """The method of the integrator in plain loops, for any model."""
+    exchange = model.processes.exchange
+    if STEPPINGS[integrator].forward_backward:
+        return ForwardBackward(model, state, exchange)
+    return RungeKutta(model.tendency, state, exchange=exchange)
+
+
+def fused_method(model: ShallowWaterModel, integrator: Integrator) -> FusedMethod:
+    """The method of the integrator in loops over tiles, for models that they compute (`why_not_fused`)."""
+    return FusedForwardBackward(model) if STEPPINGS[integrator].forward_backward else FusedRungeKutta(model)
 
 
 def warnings_before(

@@ -25,7 +25,14 @@ from swe.integrators import STEPPINGS, Integrator, Stepping
 from swe.output.description import Moment, RunDescription, start_hash
 from swe.output.recorder import Recorder
 from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
-from swe.run.composition import build_model, default_time_step, require_keeping_energy, warnings_before
+from swe.run.composition import (
+    build_model,
+    default_time_step,
+    fused_method,
+    plain_method,
+    require_keeping_energy,
+    warnings_before,
+)
 from swe.run.memory import return_freed_memory
 from swe.run.progress import ProgressBar
 from swe.run.signals import StopRequest, stop_requests
@@ -37,7 +44,7 @@ from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import Schedule, last_shared
 from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
 from swe.stepping.time_stepping import RungeKutta
-from swe.tiles.fused import FusedRungeKutta, why_not_fused
+from swe.tiles.fused import FusedMethod, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
@@ -147,11 +154,10 @@ class Simulation:
         require_finite_integrals(vars(self.initial_invariants), case.name)
         for warning in warnings_before(start, self.model, self.configuration, self.initial_courant_number):
             warnings.warn(warning, SetupWarning, stacklevel=2)
-        fused = why_not_fused(self.model) is None and not self._stepping.forward_backward
-        self.loops = "fused" if fused else "plain"
+        self.loops = "fused" if why_not_fused(self.model) is None else "plain"
         description = self._described(output_fields)
         self.recorder = None if directory is None else Recorder(description, directory, overwrite, resume)
-        self.method = FusedRungeKutta(self.model) if self.loops == "fused" else self._plain_method()
+        self.method = self._build_method()
         self.stepper = self._build_stepper()
         reached = None if self.recorder is None else self.recorder.restore()
         if reached is not None:
@@ -181,11 +187,11 @@ class Simulation:
     def _stepping(self) -> Stepping:
         return STEPPINGS[self.configuration.integrator]
 
-    def _plain_method(self) -> RungeKutta | ForwardBackward:
-        exchange = self.model.processes.exchange
-        if self._stepping.forward_backward:
-            return ForwardBackward(self.model, self.state, exchange)
-        return RungeKutta(self.model.tendency, self.state, exchange=exchange)
+    def _build_method(self) -> FusedMethod | RungeKutta | ForwardBackward:
+        integrator = self.configuration.integrator
+        if self.loops == "fused":
+            return fused_method(self.model, integrator)
+        return plain_method(self.model, self.state, integrator)
 
     def _build_stepper(self) -> Stepper:
         terms = self.model.terms_after_steps

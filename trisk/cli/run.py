@@ -119,7 +119,7 @@ def run(
     )
     if not quiet and simulation.loops == "plain":
         typer.echo(
-            f"{why_not_fused(simulation.model) or f'the integrator is {integrator}'}: plain loops take the steps, at several times the cost",
+            f"{why_not_fused(simulation.model)}: plain loops take the steps, at several times the cost",
             err=True,
         )
     simulation.run(until=days, progress=not quiet)

@@ -12,7 +12,8 @@ from swe.diagnostics.budgets import measure_rates
 from swe.equations.anticipation import Anticipation
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.tendency import tendency
-from swe.stepping.time_stepping import RungeKutta
+from swe.integrators import Integrator
+from swe.run.composition import fused_method, plain_method
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
 from tests.cut_mesh import without_cap, without_cells
@@ -29,7 +30,9 @@ def test_three_forms_of_the_tendency_agree(
     part: VoronoiMesh, cells_per_tile: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     build = cutting.build_tiles
-    monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments: build(*arguments, cells_per_tile))
+    monkeypatch.setattr(
+        "swe.tiles.fused.build_tiles", lambda *arguments, **options: build(*arguments, cells_per_tile, **options)
+    )
     model, state = random_model(part, seed=8)
     equation = tendency(state, build_operators(model.mesh), model.topography, model.coriolis, model.gravity)
     plain, fused = state.empty_like(), state.empty_like()
@@ -114,13 +117,14 @@ def test_a_run_in_a_basin(larger_mesh: VoronoiMesh, options: dict[str, object]) 
     assert energy < limit
 
 
-def test_fused_and_plain_steps_agree(larger_mesh: VoronoiMesh) -> None:
+@pytest.mark.parametrize("integrator", ["rk4", "fbrk3"])
+def test_fused_and_plain_steps_agree(larger_mesh: VoronoiMesh, integrator: Integrator) -> None:
     model, state = random_model(without_cap(larger_mesh), seed=8)
     plain, fused = state.copy(), state.copy()
-    RungeKutta(model.tendency, plain).advance(plain, 20.0, 3)
+    plain_method(model, plain, integrator).advance(plain, 20.0, 3)
     for threads in (1, 2):
         numba.set_num_threads(threads)
         fused = state.copy()
-        assert FusedRungeKutta(model).advance(fused, 20.0, 3) == 3
+        assert fused_method(model, integrator).advance(fused, 20.0, 3) == 3
         np.testing.assert_allclose(fused.thickness, plain.thickness, rtol=1e-12)
         np.testing.assert_allclose(fused.normal_velocity, plain.normal_velocity, rtol=0, atol=1e-10)
