@@ -15,12 +15,12 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from swe.integrators import FB_RK32
+from swe.tiles.contributions import contributions
 from swe.tiles.tile_kernels import (
     MIRROR,
     RING,
     Arrays,
     TileArrays,
-    _all_cells,
     _count_unsound,
     _load_cells,
     _load_edges,
@@ -37,9 +37,19 @@ Weights = tuple[float, float, float]
 
 @inlined
 def _load_mean_of_cells(heights: Arrays, weights: Weights, first: int, owned: int, halo: Index, local: Array) -> None:
-    """The weighted mean of three thicknesses at the tile's own cells and at those in its halo."""
+    """The weighted mean of three thicknesses at the tile's own cells and at those in its halo.
+
+    The two stages whose weight of the second vanishes do not read it.
+    """
     new, last, start = heights
     a, b, c = weights
+    if b == 0.0:
+        for i in range(owned):
+            local[i] = a * new[first + i] + c * start[first + i]
+        for i in range(halo.size):
+            cell = halo[i]
+            local[owned + i] = a * new[cell] + c * start[cell]
+        return
     for i in range(owned):
         local[i] = a * new[first + i] + b * last[first + i] + c * start[first + i]
     for i in range(halo.size):
@@ -138,7 +148,7 @@ def _pass_of_tile(
 ) -> None:
     """Velocity and thickness of one tile; see `one_pass`."""
     first_cell, first_edge, halo, halo_parts, indices, index_parts, metrics, metric_parts = tiles
-    h_rows, U_rows, q_rows, S_rows, dh_rows, _ = scratch
+    h_rows, U_rows, q_rows, S_rows, _, _ = scratch
     a, b, c = halo_parts[tile], index_parts[tile], metric_parts[tile]
     halo_cells, halo_edges = halo[a[0] : a[1]], halo[a[1] : a[2]]
     slots = indices[b[0] : b[1]]
@@ -151,14 +161,14 @@ def _pass_of_tile(
     inverse_area, potential = metrics[c[5] : c[6]], metrics[c[6] : c[7]]
     cell, edge = first_cell[tile], first_edge[tile]
     own_cells, own_edges = first_cell[tile + 1] - cell, first_edge[tile + 1] - edge
-    local, U, q, S, dh = h_rows[thread], U_rows[thread], q_rows[thread], S_rows[thread], dh_rows[thread]
+    local, U, q, S = h_rows[thread], U_rows[thread], q_rows[thread], S_rows[thread]
     start, at, moved = velocities
 
     _load_edges(at, edge, own_edges, halo_edges, d, U)
     if accelerates:
         _load_mean_of_cells(heights, weights, cell, own_cells, halo_cells, local)
         _potential_vorticity(U, local, edges_on_vertex, cells_on_vertex, kites, planetary, q)
-        _all_cells(
+        contributions(
             gravity,
             local,
             U,
@@ -173,7 +183,6 @@ def _pass_of_tile(
             larger,
             larger_start,
             larger_sides,
-            dh,
             S,
         )
         _move_edges(start, edge, own_edges, halo_edges, S, slots, border, d, velocity_factor, U, moved)
