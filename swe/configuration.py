@@ -11,13 +11,11 @@ from mesh.plain import plain_number
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError
+from swe.integrators import STEPPINGS, Integrator
 
 DEFAULT_SNAPSHOT_INTERVAL = SECONDS_PER_DAY
 DEFAULT_DIAGNOSTICS_INTERVAL = SECONDS_PER_DAY / 4
 DEFAULT_CHECKPOINT_INTERVAL = SECONDS_PER_DAY
-
-Integrator = Literal["rk4", "rrk4"]
-"""Classical Runge-Kutta, or the same with relaxation, which conserves total energy to round-off."""
 
 SchemeName = Literal["ringler2010", "consistent"]
 """Those of `swe.run.composition.SCHEMES`."""
@@ -64,7 +62,7 @@ class Options:
             words = name.replace("_", " ")
             if name in CHOICES:
                 if not (isinstance(value, str) and value in CHOICES[name]):
-                    raise InputError(f"the {words} is {value!r}; it must be {' or '.join(map(repr, CHOICES[name]))}")
+                    raise InputError(f"the {words} is {value!r}; it must be {_alternatives(CHOICES[name])}")
                 object.__setattr__(self, name, str(value))
                 continue
             number = plain_number(f"the {words}", value, InputError)
@@ -77,9 +75,11 @@ class Options:
 
     def require_suitable(self, case_name: str, prescribed_wind: bool) -> None:
         """Raise `InputError` if options do not suit the case."""
-        if prescribed_wind and (self.integrator != "rk4" or self.anticipation > 0.0 or self.dissipation > 0.0):
+        relaxed = STEPPINGS[self.integrator].relaxed
+        if prescribed_wind and (relaxed or self.anticipation > 0.0 or self.dissipation > 0.0):
             raise InputError(
-                f"the wind of {case_name} is prescribed; rrk4, anticipation and dissipation go with winds that evolve"
+                f"the wind of {case_name} is prescribed; {self.integrator if relaxed else 'rrk4'}, anticipation and "
+                "dissipation go with winds that evolve"
             )
 
     def require_suitable_mesh(self, mesh: VoronoiMesh) -> None:
@@ -104,3 +104,9 @@ class Options:
             self.dissipation,
             self.scheme,
         )
+
+
+def _alternatives(words: tuple[str, ...]) -> str:
+    """Words in quotation marks, as in 'a', 'b' or 'c'."""
+    *first, last = map(repr, words)
+    return f"{', '.join(first)} or {last}"

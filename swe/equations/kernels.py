@@ -187,6 +187,13 @@ def add_scaled(y: Array, factor: float, k: Array, result: Array) -> None:
 
 
 @compiled
+def blend(a: float, x: Array, b: float, y: Array, c: float, z: Array, result: Array) -> None:
+    """Result = a x + b y + c z, entry by entry."""
+    for i in numba.prange(x.size):
+        result[i] = a * x[i] + b * y[i] + c * z[i]
+
+
+@compiled
 def count_unsound(h: Array, u: Array) -> int:
     """Number of non-finite values and non-positive thicknesses."""
     count = 0

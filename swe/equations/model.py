@@ -17,9 +17,6 @@ from swe.errors import InputError
 from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
 
-STABLE_COURANT_NUMBER = 2.0 / 3.0**0.5
-"""Linear gravity waves on regular hexagons are stable under classical RK4 up to this value, see `courant_number`."""
-
 ENTITIES_PER_CELL = 16
 """An upper bound on cells, edges and vertices together per cell: 6 on a sphere, 13 for a single hexagon."""
 
@@ -142,13 +139,26 @@ class ShallowWaterModel:
 
         Allocates nothing after the first call, except what the terms allocate.
         """
-        self._update_thickness_tendency(state, result)
-        if self.prescribed_wind:
-            result.normal_velocity.fill(0.0)
-        else:
-            self._update_velocity_tendency(state, result)
+        self._update_flux(state)
+        self._update_thickness_tendency(result.thickness)
+        self._update_velocity_tendency(state, result.normal_velocity)
         for term in self.terms_in_stages:
             self._add(term, state, time, result)
+
+    def thickness_tendency(self, state: State, result: Array, time: float = 0.0) -> None:
+        """Write dh/dt (n_cells,), m/s, of `state` at `time`, s, into `result`: one half of `tendency`."""
+        self._update_flux(state)
+        self._update_thickness_tendency(result)
+        for term in self.terms_in_stages:
+            term.add_source(self.mesh, state, time, result)
+
+    def velocity_tendency(self, state: State, result: Array, time: float = 0.0) -> None:
+        """Write du/dt (n_edges,), m/s2, of `state` at `time`, s, into `result`: the other half of `tendency`."""
+        self._update_flux(state)
+        self._update_velocity_tendency(state, result)
+        for term in self.terms_in_stages:
+            term.add_acceleration(self.mesh, state, time, result)
+        result[self._walls] = 0.0
 
     def tendency_of(self, term: Term, state: State, time: float = 0.0) -> State:
         """The tendency of `state` at `time`, s, due to `term` alone, as a new state per second."""
@@ -157,7 +167,7 @@ class ShallowWaterModel:
         q_edge, nothing = np.zeros(mesh.n_edges), np.zeros(mesh.n_cells)
         term.change_vorticity(state, self._potential_vorticity, q_edge)
         if q_edge.any():
-            self.scheme.flux(state.thickness, state.normal_velocity, self._thickness_flux)
+            self._update_flux(state)
             self._update_velocity(nothing, nothing, nothing, q_edge, 0.0, result.normal_velocity)
         self._add(term, state, time, result)
         return result
@@ -171,30 +181,34 @@ class ShallowWaterModel:
     def _walls(self) -> Index:
         return wall_edges(self.mesh)
 
-    def _update_thickness_tendency(self, state: State, result: State) -> None:
-        mesh, F = self.closed, self._thickness_flux
-        self.scheme.flux(state.thickness, state.normal_velocity, F)
+    def _update_flux(self, state: State) -> None:
+        self.scheme.flux(state.thickness, state.normal_velocity, self._thickness_flux)
+
+    def _update_thickness_tendency(self, result: Array) -> None:
+        """Write the time derivative of thickness; the thickness flux has been computed already."""
+        mesh = self.closed
         kernels.thickness_tendency(
-            F,
+            self._thickness_flux,
             mesh.n_edges_on_cell,
             mesh.edges_on_cell,
             self.mesh.edge_signs_on_cell,
             mesh.dv_edge,
             mesh.area_cell,
-            result.thickness,
+            result,
         )
 
-    def _update_velocity_tendency(self, state: State, result: State) -> None:
+    def _update_velocity_tendency(self, state: State, result: Array) -> None:
         """Write the time derivative of velocity; the thickness flux has been computed already."""
+        if self.prescribed_wind:
+            result.fill(0.0)
+            return
         q_edge = self._potential_vorticity_edge
         self._update_vorticity(state)
         kernels.mean_of_vertices(self._potential_vorticity, self.mesh.vertices_on_edge, q_edge)
         for term in self.terms_in_stages:
             term.change_vorticity(state, self._potential_vorticity, q_edge)
         self._update_kinetic_energy(state)
-        self._update_velocity(
-            state.thickness, self.topography, self._kinetic_energy, q_edge, self.gravity, result.normal_velocity
-        )
+        self._update_velocity(state.thickness, self.topography, self._kinetic_energy, q_edge, self.gravity, result)
 
     def _update_velocity(self, h: Array, b: Array, K: Array, q_edge: Array, gravity: float, result: Array) -> None:
         """Write the Coriolis flux of the thickness flux minus the gradient of g (h + b) + K."""
@@ -257,9 +271,9 @@ class ShallowWaterModel:
 def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_wind: bool, time_step: float) -> float:
     """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
 
-    Linear gravity waves on regular hexagons are stable under classical RK4 up to 2 / sqrt(3), as the largest
-    frequency is sqrt(6 g h)/d and the limit of RK4 on the imaginary axis is 2 sqrt(2). Under a prescribed wind,
-    which has no waves, it is the largest |u| dt / d. `mesh` must have no gaps (`closed_mesh`).
+    The largest frequency of linear gravity waves on regular hexagons is sqrt(6 g h)/d; `swe.integrators` says how long
+    a step each integrator stands. Under a prescribed wind, which has no waves, it is the largest |u| dt / d. `mesh`
+    must have no gaps (`closed_mesh`).
     """
     if not np.isfinite(state.normal_velocity).all():
         return float("nan")

@@ -52,6 +52,14 @@ class Term:
     def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
         """Add the term at `state` and `time`, seconds since the start, to `tendency`; does nothing by default."""
 
+    def add_source(self, mesh: VoronoiMesh, state: State, time: float, tendency: Array) -> None:
+        """Add the part in dh/dt (n_cells,) alone; by default what `add` adds there, found by evaluating all of it."""
+        self.add(mesh, state, time, State(tendency, np.zeros(mesh.n_edges)))
+
+    def add_acceleration(self, mesh: VoronoiMesh, state: State, time: float, tendency: Array) -> None:
+        """Add the part in du/dt (n_edges,) alone; by default what `add` adds there, found by evaluating all of it."""
+        self.add(mesh, state, time, State(np.zeros(mesh.n_cells), tendency))
+
     def apply(self, state: State, time_step: float) -> None:
         """Change `state` by the effect over `time_step` seconds of a term that acts after steps."""
         raise NotImplementedError(f"the term {self.name} acts in the stages of a step")
@@ -95,10 +103,18 @@ class Forcing(Term):
 
     def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
         """See `Term`."""
-        if self.acceleration is not None:
-            tendency.normal_velocity[:] += self._values("acceleration", mesh, state, time, mesh.n_edges)
+        self.add_acceleration(mesh, state, time, tendency.normal_velocity)
+        self.add_source(mesh, state, time, tendency.thickness)
+
+    def add_source(self, mesh: VoronoiMesh, state: State, time: float, tendency: Array) -> None:
+        """See `Term`."""
         if self.source is not None:
-            tendency.thickness[:] += self._values("source", mesh, state, time, mesh.n_cells)
+            tendency[:] += self._values("source", mesh, state, time, mesh.n_cells)
+
+    def add_acceleration(self, mesh: VoronoiMesh, state: State, time: float, tendency: Array) -> None:
+        """See `Term`."""
+        if self.acceleration is not None:
+            tendency[:] += self._values("acceleration", mesh, state, time, mesh.n_edges)
 
     def _values(self, what: str, mesh: VoronoiMesh, state: State, time: float, size: int) -> Array:
         """The values of a user's function: one number for all entities, or one for each of `size`."""

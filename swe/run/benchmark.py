@@ -8,10 +8,11 @@ import numpy as np
 
 from swe.equations.kernels import add_scaled
 from swe.errors import RunError
+from swe.integrators import Integrator
+from swe.run.composition import plain_method
 from swe.run.simulation import Simulation
 from swe.run.threads import worthwhile_threads
-from swe.stepping.time_stepping import RungeKutta
-from swe.tiles.fused import FusedRungeKutta
+from swe.tiles.fused import FusedMethod
 
 ROUNDS = 9
 """The fused step, the plain one and the triad take turns this many times; medians are reported."""
@@ -25,7 +26,7 @@ TRIAD_SIZE = 25_000_000
 
 @dataclass(frozen=True)
 class Timing:
-    """Medians over alternating turns; a step is one of classical RK4.
+    """Medians over alternating turns; a step is one of the `integrator`.
 
     `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that divided by the
     time. `triad_gb_per_s` is the rate of the STREAM triad (McCalpin 1995), a = b + 3 c, in the same process, with two
@@ -42,6 +43,7 @@ class Timing:
     gb_per_s: float
     triad_gb_per_s: float
     fraction_of_triad: float
+    integrator: Integrator = "rk4"
 
 
 def measure(simulation: Simulation) -> Timing:
@@ -50,9 +52,9 @@ def measure(simulation: Simulation) -> Timing:
     Raises `RunError` if the state blows up.
     """
     model, fused, time_step = simulation.model, simulation.method, simulation.configuration.time_step
-    assert isinstance(fused, FusedRungeKutta)
-    cells = model.mesh.n_cells
-    plain = RungeKutta(model.tendency, simulation.state)
+    assert isinstance(fused, FusedMethod)
+    cells, integrator = model.mesh.n_cells, simulation.configuration.integrator
+    plain = plain_method(model, simulation.state, integrator)
     fast, slow = simulation.state.copy(), simulation.state.copy()
     a, b, c = (np.ones(TRIAD_SIZE) for _ in range(3))
     with worthwhile_threads(cells) as threads:
@@ -80,6 +82,7 @@ def measure(simulation: Simulation) -> Timing:
         gb_per_s=float(volume / nanoseconds),
         triad_gb_per_s=float(triad),
         fraction_of_triad=float(volume / nanoseconds / triad),
+        integrator=integrator,
     )
 
 

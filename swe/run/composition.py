@@ -1,4 +1,4 @@
-"""From the fields of a case and the options of a run to the model: time step, terms and warnings."""
+"""From the fields of a case and the options of a run to the model: time step, terms, method and warnings."""
 
 from collections.abc import Iterator, Sequence
 
@@ -9,36 +9,43 @@ from swe.configuration import Configuration, Options
 from swe.equations.anticipation import Anticipation
 from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
-from swe.equations.model import STABLE_COURANT_NUMBER, ShallowWaterModel, courant_number
+from swe.equations.model import ShallowWaterModel, courant_number
 from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.soundness import warning_of_vertices
 from swe.equations.terms import Term
 from swe.errors import InputError
+from swe.integrators import STEPPINGS, Integrator
 from swe.run.case import CaseFields
+from swe.state import State
+from swe.stepping.forward_backward import ForwardBackward
 from swe.stepping.schedule import dividing_step
-
-DEFAULT_COURANT_NUMBER = 0.8
-"""Courant number of the default time step, 70 percent of the limit for gravity waves (`courant_number`)."""
+from swe.stepping.time_stepping import RungeKutta
+from swe.tiles.forward_backward import FusedForwardBackward
+from swe.tiles.fused import FusedMethod, FusedRungeKutta
 
 SCHEMES: dict[str, type[Scheme]] = {scheme.name: scheme for scheme in (Ringler2010, Consistent)}
 """Schemes by the names that a user gives."""
 
 
 def default_time_step(start: CaseFields, options: Options) -> float:
-    """Largest step, s, up to the default Courant number that divides the shorter output interval."""
+    """Largest step, s, up to the integrator's default Courant number that divides the shorter output interval."""
     case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
     per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
     if not np.isfinite(per_second):
         raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
+    courant = STEPPINGS[options.integrator].default_courant_number
     # Where nothing moves, under a prescribed wind of zero, any step will do.
-    return dividing_step(DEFAULT_COURANT_NUMBER / per_second, interval) if per_second > 0.0 else interval
+    return dividing_step(courant / per_second, interval) if per_second > 0.0 else interval
 
 
-def require_keeping_energy(integrator: str, terms: Sequence[Term]) -> None:
+def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> None:
     """Raise `InputError` if relaxation would undo what terms in the stages do to energy."""
     changing = [term.name for term in terms if "total_energy" in term.changes and not term.after_steps]
-    if integrator == "rrk4" and changing:
-        raise InputError(f"rrk4 keeps total energy, which the term {changing[0]} changes; take the integrator rk4")
+    if STEPPINGS[integrator].relaxed and changing:
+        raise InputError(
+            f"{integrator} keeps total energy, which the term {changing[0]} changes; take the integrator "
+            f"{integrator.removeprefix('r')}"
+        )
 
 
 def build_model(start: CaseFields, configuration: Configuration) -> ShallowWaterModel:
@@ -61,12 +68,25 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
     )
 
 
+def plain_method(model: ShallowWaterModel, state: State, integrator: Integrator) -> RungeKutta | ForwardBackward:
+    """The method of the integrator in plain loops, for any model."""
+    exchange = model.processes.exchange
+    if STEPPINGS[integrator].forward_backward:
+        return ForwardBackward(model, state, exchange)
+    return RungeKutta(model.tendency, state, exchange=exchange)
+
+
+def fused_method(model: ShallowWaterModel, integrator: Integrator) -> FusedMethod:
+    """The method of the integrator in loops over tiles, for models that they compute (`why_not_fused`)."""
+    return FusedForwardBackward(model) if STEPPINGS[integrator].forward_backward else FusedRungeKutta(model)
+
+
 def warnings_before(
     start: CaseFields, model: ShallowWaterModel, configuration: Configuration, initial_courant_number: float
 ) -> Iterator[str]:
     """What is likely to go wrong during a run, in sentences."""
     time_step = configuration.time_step
-    waves = time_step * STABLE_COURANT_NUMBER / max(initial_courant_number, 1e-300)
+    waves = time_step * STEPPINGS[configuration.integrator].stable_courant_number / max(initial_courant_number, 1e-300)
     damping = min(
         (term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)),
         default=float("inf"),

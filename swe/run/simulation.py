@@ -14,7 +14,6 @@ from swe.configuration import (
     DEFAULT_CHECKPOINT_INTERVAL,
     DEFAULT_DIAGNOSTICS_INTERVAL,
     DEFAULT_SNAPSHOT_INTERVAL,
-    Integrator,
     Options,
     SchemeName,
 )
@@ -23,13 +22,15 @@ from swe.diagnostics.invariants import Invariants, measure_invariants
 from swe.diagnostics.outputs import chosen_fields
 from swe.equations.soundness import problem_at_vertices, problem_with_state
 from swe.errors import InputError, RunError, RunStopped, SetupWarning
+from swe.integrators import STEPPINGS, Integrator, Stepping
 from swe.output.description import Moment, RunDescription, start_hash
 from swe.output.recorder import Recorder
 from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
 from swe.run.composition import (
-    DEFAULT_COURANT_NUMBER,
     build_model,
     default_time_step,
+    fused_method,
+    plain_method,
     require_keeping_energy,
     warnings_before,
 )
@@ -39,11 +40,12 @@ from swe.run.signals import StopRequest, stop_requests
 from swe.run.threads import worthwhile_threads
 from swe.run.watch import Callback, Watch
 from swe.state import State
+from swe.stepping.forward_backward import ForwardBackward
 from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import Schedule, last_shared
 from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
 from swe.stepping.time_stepping import RungeKutta
-from swe.tiles.fused import FusedRungeKutta, why_not_fused
+from swe.tiles.fused import FusedMethod, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
@@ -65,8 +67,9 @@ class Simulation:
         Run directory to create; nothing is written if None. Refused if it already holds a run, unless `overwrite` or
         `resume`.
     time_step
-        Seconds; by default the largest up to `DEFAULT_COURANT_NUMBER` that divides the shorter output interval.
-        Steps are shortened where they would pass an output time. Warns with `SetupWarning` if it is unstable.
+        Seconds; by default the largest up to 70 percent of the integrator's limit (`swe.integrators`) that divides the
+        shorter output interval. Steps are shortened where they would pass an output time. Warns with `SetupWarning` if
+        it is unstable.
     snapshot_interval, diagnostics_interval
         Seconds between snapshots and between rows of diagnostics.
     checkpoint_interval
@@ -74,7 +77,8 @@ class Simulation:
     sampling
         "point" takes initial thickness and topography at cell centres, "mean" takes their means over the cells.
     integrator
-        "rk4", the classical method, or "rrk4", whose steps are relaxed to conserve total energy (`Relaxation`).
+        "rk4", the classical method, or "fbrk3", the forward-backward one (`FB_RK32`), of lower order but with longer
+        and cheaper steps; "rrk4" and "rfbrk3" are the same, relaxed to conserve total energy (`Relaxation`).
     anticipation
         Fraction of the time step by which potential vorticity is anticipated, 0.5 in the literature, so that potential
         enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
@@ -156,10 +160,10 @@ class Simulation:
         require_finite_integrals(vars(self.initial_invariants), case.name)
         for warning in warnings_before(start, self.model, self.configuration, self.initial_courant_number):
             warnings.warn(warning, SetupWarning, stacklevel=2)
-        self.loops = "fused" if why_not_fused(self.model) is None else "plain"
+        self.loops = "fused" if why_not_fused(self.model, options.integrator) is None else "plain"
         description = self._described(output_fields)
         self.recorder = None if directory is None else Recorder(description, directory, overwrite, resume)
-        self.method = FusedRungeKutta(self.model) if self.loops == "fused" else self._plain_method()
+        self.method = self._build_method()
         self.stepper = self._build_stepper()
         reached = None if self.recorder is None else self.recorder.restore()
         if reached is not None:
@@ -185,12 +189,19 @@ class Simulation:
         self.set_back_to(initial_state(self.case, self.mesh, sampling, start.kites_matter), 0.0, 0)
         self.courant_number = self.initial_courant_number
 
-    def _plain_method(self) -> RungeKutta:
-        return RungeKutta(self.model.tendency, self.state, exchange=self.model.processes.exchange)
+    @property
+    def _stepping(self) -> Stepping:
+        return STEPPINGS[self.configuration.integrator]
+
+    def _build_method(self) -> FusedMethod | RungeKutta | ForwardBackward:
+        integrator = self.configuration.integrator
+        if self.loops == "fused":
+            return fused_method(self.model, integrator)
+        return plain_method(self.model, self.state, integrator)
 
     def _build_stepper(self) -> Stepper:
         terms = self.model.terms_after_steps
-        if self.configuration.integrator == "rrk4":
+        if self._stepping.relaxed:
             return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
         return FixedSteps(SplitMethod(self.method, terms) if terms else self.method)
 
@@ -368,7 +379,8 @@ class Simulation:
                 f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the "
                 f"{problem_with_state(self.mesh, self.state)}; "
                 f"the Courant number was {self.initial_courant_number:.3g} at the start: where that is above "
-                f"{DEFAULT_COURANT_NUMBER}, a smaller time step than {self.configuration.time_step:g} s helps"
+                f"{self._stepping.default_courant_number:.3g}, a smaller time step than "
+                f"{self.configuration.time_step:g} s helps"
             )
 
     def _explain_by_vertices(self, before: State, time: float, event: float, steps: int) -> None:

@@ -17,7 +17,7 @@ LANDED = 1e-10
 
 
 class Method(Protocol):
-    """A Runge-Kutta method: `FusedRungeKutta` or its plain twin, `RungeKutta`."""
+    """A Runge-Kutta method, forward-backward or not: a `FusedMethod` or its plain twin."""
 
     @property
     def unsound(self) -> int:

@@ -103,9 +103,12 @@ def build_tiles(
     cells_per_tile: int = CELLS_PER_TILE,
     *,
     sides: Sides | None = None,
+    with_border: bool = False,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
+    `with_border` lets every tile compute the velocity at all edges of its cells, also at its border, the edges that
+    other tiles own. They come first among the edges of its halo.
     Where neighbours are missing, a tile reads an edge of no length, kites of no area and a wall's own cell twice.
     `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. With `sides`, the tiles are
     those of a scheme whose flux through a side has a part from each of its cells: they hold the rings of all cells
@@ -124,7 +127,9 @@ def build_tiles(
     cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, cell_rank, inverse_order(edge_order))
     pieces = [
         cutter.cut(
-            cell_order[first_cell[tile] : first_cell[tile + 1]], edge_order[first_edge[tile] : first_edge[tile + 1]]
+            cell_order[first_cell[tile] : first_cell[tile + 1]],
+            edge_order[first_edge[tile] : first_edge[tile + 1]],
+            with_border,
         )
         for tile in range(n_tiles)
     ]
@@ -134,7 +139,8 @@ def build_tiles(
             raise InputError(
                 f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
             )
-        return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2, sides=sides)
+        smaller = cells_per_tile // 2
+        return build_tiles(whole, topography, coriolis, gravity, smaller, sides=sides, with_border=with_border)
     halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
     metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
@@ -189,12 +195,15 @@ class _Cutter:
         self.local_edges = _LocalNumbers(mesh.n_edges)
         self.local_vertices = _LocalNumbers(mesh.n_vertices)
 
-    def cut(self, own_cells: Index, own_edges: Index) -> _Piece:
+    def cut(self, own_cells: Index, own_edges: Index, with_border: bool) -> _Piece:
         """The tile that owns these cells and edges, given by their numbers in the mesh."""
         mesh, cells, edges, vertices = self.mesh, self.local_cells, self.local_edges, self.local_vertices
         cells.add(own_cells)
         edges.add(own_edges)
-        cells.add(mesh.cells_on_edge[own_edges])
+        if with_border:
+            edges.add(_edges_of(mesh, own_cells))
+        moved = edges.known()
+        cells.add(mesh.cells_on_edge[moved])
         computed = cells.known()
         sides = mesh.n_edges_on_cell[computed]
         inside = np.arange(mesh.max_edges) < sides[:, None]
@@ -231,6 +240,7 @@ class _Cutter:
                 larger,
                 slots[larger, 0],
                 sides[larger],
+                np.stack([self._slot(moved[len(own_edges) :], end, slots) for end in (0, 1)]),
                 *self._larger_in_flux(larger, around),
             ],
             metrics=[
@@ -339,6 +349,12 @@ def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
         return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
 
     return own if parted(own) <= DISORDER * parted(curve) else curve
+
+
+def _edges_of(mesh: VoronoiMesh, cells: Index) -> Index:
+    """Edges of the cells, in the order of their rings; some stand there twice."""
+    inside = np.arange(mesh.max_edges) < mesh.n_edges_on_cell[cells][:, None]
+    return mesh.edges_on_cell[cells][inside]
 
 
 def _is_identity(order: Index) -> bool:

@@ -1,4 +1,4 @@
-"""The fast path: classical RK4, each stage of which is one pass over the tiles of the mesh."""
+"""The fast path: methods whose stages are passes over the tiles of the mesh, and the first of them, classical RK4."""
 
 import numba
 import numpy as np
@@ -9,39 +9,44 @@ from swe.equations.consistent import Consistent
 from swe.equations.model import ShallowWaterModel
 from swe.equations.schemes import Ringler2010
 from swe.errors import InputError
+from swe.integrators import STEPPINGS, Integrator
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
 from swe.tiles.layout import LANES, MIRROR
 
 
-def why_not_fused(model: ShallowWaterModel) -> str | None:
+def why_not_fused(model: ShallowWaterModel, integrator: Integrator = "rk4") -> str | None:
     """What the loops over tiles do not compute of a model, as part of a sentence; None if they compute all of it."""
     names = [term.name for term in model.terms_in_stages]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
+    if isinstance(model.scheme, Consistent) and STEPPINGS[integrator].forward_backward:
+        return f"the scheme is {model.scheme.name} and the integrator {integrator}"
     return None if isinstance(model.scheme, Ringler2010 | Consistent) else f"the scheme is {model.scheme.name}"
 
 
-class FusedRungeKutta:
-    """Advances a state by classical RK4, with the same result as `RungeKutta(model.tendency, state)` to round-off.
+class FusedMethod:
+    """What methods share whose stages are passes over tiles: the tiles, scratch, and the order of the state in them.
 
     The weights of the Coriolis flux follow from the kite areas; `weights_on_edge` in files from other programs equal
     them up to their noise. Topography and Coriolis parameter are taken from the model once, here. Raises `InputError`
     if the loops over tiles do not compute all of the model (`why_not_fused`).
     """
 
-    def __init__(self, model: ShallowWaterModel) -> None:
-        reason = why_not_fused(model)
+    def __init__(self, model: ShallowWaterModel, stages: int, plain_twin: str, with_border: bool = False) -> None:
+        reason = why_not_fused(model, "fbrk3" if with_border else "rk4")
         if reason:
-            raise InputError(f"{reason}, which the fused method lacks; take RungeKutta(model.tendency, ...)")
+            raise InputError(f"{reason}, which the fused method lacks; take {plain_twin}")
         sides = model.scheme.sides if isinstance(model.scheme, Consistent) else None
-        self.tiles = build_tiles(model.mesh, model.topography, model.coriolis, model.gravity, sides=sides)
+        self.tiles = build_tiles(
+            model.mesh, model.topography, model.coriolis, model.gravity, sides=sides, with_border=with_border
+        )
         self.model = model
         self._scratch = _scratch(self.tiles)
         self._parts = None if sides is None else _parts_of_flux(self.tiles)
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
-        self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(3)]
+        self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(stages)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
 
     @property
@@ -51,14 +56,8 @@ class FusedRungeKutta:
 
     @property
     def bytes_per_step(self) -> int:
-        """Bytes that a step must move, with every array counted once for each stage that reads or writes it.
-
-        The tiles are read in all four stages. The stages need 2, 3, 3 and 4 states: the one at which the slope is
-        taken, after the first stage also the initial one, and the one written; the last overwrites the initial one.
-        """
-        tiles = sum(array.nbytes for array in self.tiles.arrays)
-        state = sum(array.nbytes for array in self._stages[0])
-        return 4 * tiles + (2 + 3 + 3 + 4) * state
+        """Bytes that a step must move, with every array counted once for each stage that reads or writes it."""
+        raise NotImplementedError
 
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
         """Advance `state` in place by `steps` steps of `time_step` seconds, fewer if one leaves `unsound` values.
@@ -72,24 +71,16 @@ class FusedRungeKutta:
         return taken
 
     def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        tiles, model = self.tiles, self.model
-        taken: int = tile_kernels.rk4_steps(
-            *(tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y, *self._stages),
-            *(time_step, steps, self._unsound),
-        )
-        return taken
+        """Advance y, in the order of the tiles, by up to `steps` steps; return how many were taken."""
+        raise NotImplementedError
 
     def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        """The stages of `rk4_steps`, with an exchange of values between processes after each."""
-        model, (second, third, fourth) = self.model, self._stages
-        fixed = (self.tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y)
-        for taken in range(1, steps + 1):
-            for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
-                tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
-                self._exchange(result)
-            if model.processes.largest(np.array([float(self.unsound)]))[0] > 0.0:
-                return taken
-        return steps
+        """The same, with an exchange of values between processes after each pass."""
+        raise NotImplementedError
+
+    def _any_unsound(self) -> bool:
+        """Whether any process found unsound values."""
+        return bool(self.model.processes.largest(np.array([float(self.unsound)]))[0] > 0.0)
 
     def _exchange(self, pair: tuple[Array, Array]) -> None:
         """Fetch the values of other processes into a pair of thickness and velocity in the order of the tiles."""
@@ -126,6 +117,44 @@ class FusedRungeKutta:
         ):
             if values is not target:
                 target[slice(None) if order is None else order] = values
+
+
+class FusedRungeKutta(FusedMethod):
+    """Advances a state by classical RK4, with the same result as `RungeKutta(model.tendency, state)` to round-off."""
+
+    def __init__(self, model: ShallowWaterModel) -> None:
+        super().__init__(model, stages=3, plain_twin="RungeKutta(model.tendency, ...)")
+
+    @property
+    def bytes_per_step(self) -> int:
+        """See `FusedMethod`.
+
+        The tiles are read in all four stages. The stages need 2, 3, 3 and 4 states: the one at which the slope is
+        taken, after the first stage also the initial one, and the one written; the last overwrites the initial one.
+        """
+        tiles = sum(array.nbytes for array in self.tiles.arrays)
+        state = sum(array.nbytes for array in self._stages[0])
+        return 4 * tiles + (2 + 3 + 3 + 4) * state
+
+    def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
+        tiles, model = self.tiles, self.model
+        taken: int = tile_kernels.rk4_steps(
+            *(tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y, *self._stages),
+            *(time_step, steps, self._unsound),
+        )
+        return taken
+
+    def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
+        """The stages of `rk4_steps`, with an exchange of values between processes after each."""
+        model, (second, third, fourth) = self.model, self._stages
+        fixed = (self.tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y)
+        for taken in range(1, steps + 1):
+            for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
+                tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
+                self._exchange(result)
+            if self._any_unsound():
+                return taken
+        return steps
 
 
 def _in_order(values: Array, order: Index | None) -> Array:

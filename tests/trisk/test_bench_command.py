@@ -35,6 +35,21 @@ def test_json_has_one_object_for_every_size(trisk: Call) -> None:
         assert timing["fraction_of_triad"] == pytest.approx(timing["gb_per_s"] / timing["triad_gb_per_s"])
 
 
+def test_another_integrator_is_timed(trisk: Call, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    path = tmp_path / "mesh.nc"
+    write_mesh(icosahedral_mesh, path)
+    code, out, _ = trisk("bench", "--mesh", path, "--integrator", "fbrk3", "--json", "-q")
+    (timing,) = json.loads(out)
+    assert code == 0
+    assert timing["integrator"] == "fbrk3"
+    # Eight arrays of three edges a cell and ten of cells are moved, and a cell's geometry is read three times.
+    states = 8 * (8 * 3) + 10 * 8
+    assert states + 3 * 200 < timing["bytes_per_cell_step"] < states + 3 * 600
+    assert timing["plain_twin_ratio"] > 1.0
+    code, out, _ = trisk("bench", "--mesh", path, "--integrator", "fbrk3", "-q")
+    assert "FB-RK(3,2)" in out
+
+
 def test_table_of_a_mesh_file(trisk: Call, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     path = tmp_path / "mesh.nc"
     write_mesh(icosahedral_mesh, path)

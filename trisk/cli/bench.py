@@ -4,7 +4,7 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
@@ -12,6 +12,7 @@ from trisk.cli.options import Quiet, Recompute
 
 if TYPE_CHECKING:
     from mesh import VoronoiMesh
+    from swe.integrators import Integrator
     from swe.run.benchmark import Timing
 
 CASE = "williamson5"
@@ -27,6 +28,9 @@ def bench(
         typer.Option("--cells", metavar="N", help="Number of cells, repeatable; by default 10242 and 40962."),
     ] = None,
     mesh_file: Annotated[Path | None, typer.Option("--mesh", help="Time the solver on this mesh instead.")] = None,
+    integrator: Annotated[
+        Literal["rk4", "fbrk3"], typer.Option("--integrator", help="The method whose steps are timed.")
+    ] = "rk4",
     recompute_metrics: Recompute = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
@@ -35,7 +39,7 @@ def bench(
 
     Reports the cost of a step of test case 5, beside plain loops and the memory bandwidth.
     """
-    results = _timings(mesh_file, cells or (), recompute_metrics, show=not quiet)
+    results = _timings(mesh_file, cells or (), integrator, recompute_metrics, show=not quiet)
     if as_json:
         typer.echo(json.dumps([asdict(timing) for timing in results]))
     else:
@@ -44,7 +48,9 @@ def bench(
         print_timings(results, CASE)
 
 
-def _timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bool, show: bool) -> "list[Timing]":
+def _timings(
+    mesh_file: Path | None, cells: Sequence[int], integrator: "Integrator", recompute_metrics: bool, show: bool
+) -> "list[Timing]":
     """Timings of test case 5 on the mesh of a file or on meshes of these sizes, announced one by one if `show`."""
     from cases import find_case
     from mesh.generation.generators import MINIMUM_CELLS
@@ -62,7 +68,7 @@ def _timings(mesh_file: Path | None, cells: Sequence[int], recompute_metrics: bo
     for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS, recompute_metrics):
         if show:
             typer.echo(f"timing {mesh.n_cells} cells", err=True)
-        results.append(measure(Simulation(mesh, find_case(CASE))))
+        results.append(measure(Simulation(mesh, find_case(CASE), integrator=integrator)))
     return results
 
 

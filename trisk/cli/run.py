@@ -34,9 +34,11 @@ def run(
         float, typer.Option("--checkpoint-hours", help="Simulated hours between checkpoints.")
     ] = 24.0,
     integrator: Annotated[
-        Literal["rk4", "rrk4"],
+        Literal["rk4", "rrk4", "fbrk3", "rfbrk3"],
         typer.Option(
-            "--integrator", help="rk4, or rrk4, which scales its steps to conserve total energy to round-off."
+            "--integrator",
+            help="rk4, or fbrk3, of order two with longer and cheaper steps; rrk4 and rfbrk3 scale their steps to "
+            "conserve total energy to round-off.",
         ),
     ] = "rk4",
     scheme: Scheme = "ringler2010",
@@ -119,7 +121,8 @@ def run(
     )
     if not quiet and simulation.loops == "plain":
         typer.echo(
-            f"{why_not_fused(simulation.model)}: plain loops take the steps, at several times the cost", err=True
+            f"{why_not_fused(simulation.model, integrator)}: plain loops take the steps, at several times the cost",
+            err=True,
         )
     simulation.run(until=days, progress=not quiet)
     if not quiet:

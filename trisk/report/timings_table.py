@@ -5,13 +5,16 @@ from collections.abc import Sequence
 from rich.console import Console
 from rich.table import Table
 
+from swe.integrators import Integrator
 from swe.run.benchmark import Timing
+
+TITLES: dict[Integrator, str] = {"rk4": "classical RK4", "fbrk3": "FB-RK(3,2)"}
 
 
 def print_timings(results: Sequence[Timing], case: str) -> None:
-    """Print a table of timings on `case`."""
+    """Print a table of timings on `case`, all of the same integrator."""
     table = Table(
-        title=f"{case}, classical RK4: cost per cell and step, medians of alternating turns",
+        title=f"{case}, {TITLES[results[0].integrator]}: cost per cell and step, medians of alternating turns",
         caption="ns: fused; plain: plain loops; bytes: every array once for each stage; GB/s: bytes by ns; "
         "triad: GB/s of STREAM; budget: bytes that the triad would move in that time",
     )

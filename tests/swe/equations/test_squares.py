@@ -9,6 +9,7 @@ from mesh.discrete.operators import normal_velocity_from_streamfunction, vanishi
 from mesh.geometry.sphere import from_lonlat
 from swe import Simulation
 from swe.errors import InputError
+from swe.integrators import STEPPINGS
 
 
 @pytest.fixture(scope="module")
@@ -40,13 +41,15 @@ def test_they_take_the_velocity_of_their_neighbours(squares: VoronoiMesh) -> Non
     assert np.abs(exact[none]).max() > 0.5
 
 
-@pytest.mark.parametrize("integrator", ["rk4", "rrk4"])
+@pytest.mark.parametrize("integrator", STEPPINGS)
 def test_a_case_runs_on_them(squares: VoronoiMesh, integrator: str) -> None:
     simulation = Simulation(squares, Williamson2(), integrator=integrator)
     before, start = simulation.state.copy(), simulation.initial_invariants
     simulation.run(1.0, progress=False)
     assert simulation.invariants.mass == pytest.approx(start.mass, rel=1e-15)
-    assert simulation.invariants.total_energy == pytest.approx(start.total_energy, rel=1e-5)
+    assert simulation.invariants.total_energy == pytest.approx(
+        start.total_energy, rel=1e-4 if integrator == "fbrk3" else 1e-5
+    )
     assert np.abs(simulation.state.thickness - before.thickness).max() < 0.1 * before.thickness.max()
 
 

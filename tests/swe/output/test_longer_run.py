@@ -11,6 +11,7 @@ from mesh import VoronoiMesh, scvt_mesh
 from swe import RunError, Simulation
 from swe.diagnostics.outputs import Evaluation
 from swe.errors import InputError, SetupWarning
+from swe.integrators import STEPPINGS
 from swe.output.checkpoint import checkpoint_paths, last_checkpoint
 from swe.output.files import DiagnosticsFile, read_series
 from swe.stepping.schedule import Schedule, last_shared
@@ -40,7 +41,7 @@ def kept_files(folder: Path) -> dict[str, bytes]:
     }
 
 
-@pytest.mark.parametrize("integrator", ["rk4", "rrk4"])
+@pytest.mark.parametrize("integrator", STEPPINGS)
 @pytest.mark.parametrize("checkpoint_hours", [1.0, 12.0, 1000.0])
 @pytest.mark.parametrize("ends", [(1.0, 2.0), (1.0, 1.3), (1.01, 2.0), (0.3, 0.625, 1.99), (0.1, 1.0), (1.125, 1.5)])
 def test_a_finished_run_is_carried_on(

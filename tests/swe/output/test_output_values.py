@@ -381,10 +381,10 @@ def test_limit_of_the_courant_number_is_that_of_classical_runge_kutta_on_hexagon
 
     from cases import Williamson5
     from swe import Simulation
-    from swe.equations.model import STABLE_COURANT_NUMBER
     from swe.errors import SetupWarning
+    from swe.integrators import STEPPINGS
 
-    assert pytest.approx(np.sqrt(8.0) / np.sqrt(6.0), rel=1e-14) == STABLE_COURANT_NUMBER
+    assert pytest.approx(np.sqrt(8.0) / np.sqrt(6.0), rel=1e-14) == STEPPINGS["rk4"].stable_courant_number
     per_second = Simulation(small_mesh, Williamson5(), time_step=1.0).initial_courant_number
     limit = 1.1547005383792515 / per_second
     with warnings.catch_warnings():

@@ -16,6 +16,7 @@ from mesh import VoronoiMesh, scvt_mesh, write_mesh
 from swe import RunError, Simulation, State
 from swe.diagnostics.outputs import Evaluation
 from swe.errors import InputError, RunStopped, SetupWarning
+from swe.integrators import STEPPINGS
 from swe.output.checkpoint import Checkpoint, checkpoint_paths, last_checkpoint, write_checkpoint
 from swe.output.files import DiagnosticsFile, HistoryFile
 from swe.output.recorder import Recorder
@@ -130,7 +131,7 @@ def test_a_checkpoint_of_nonsense_is_refused(tmp_path: Path, change: dict[str, n
         last_checkpoint(tmp_path, 2, 1)
 
 
-@pytest.mark.parametrize("integrator", ["rk4", "rrk4"])
+@pytest.mark.parametrize("integrator", STEPPINGS)
 def test_a_stopped_run_goes_on_to_the_same_files(
     icosahedral_mesh: VoronoiMesh, tmp_path: Path, integrator: str
 ) -> None:

@@ -9,9 +9,11 @@ import pytest
 from mesh import VoronoiMesh, mesh_from_points
 from mesh.arrays import Array
 from swe import ShallowWaterModel, State
+from swe.integrators import Integrator
 from swe.parallel.exact_sum import exact_sums
 from swe.parallel.processes import OneProcess
-from swe.stepping.time_stepping import RungeKutta
+from swe.run.composition import fused_method, plain_method
+from swe.stepping.steppers import Method
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
 from tests.cut_mesh import FILL, without_cells
@@ -79,18 +81,28 @@ def widened(mesh: VoronoiMesh, cells: Array) -> Array:
     return cells
 
 
-def fused(model: ShallowWaterModel, _: State) -> FusedRungeKutta:
-    return FusedRungeKutta(model)
+def fused(model: ShallowWaterModel, _: State, integrator: Integrator) -> Method:
+    return fused_method(model, integrator)
 
 
-def plain(model: ShallowWaterModel, state: State) -> RungeKutta:
-    return RungeKutta(model.tendency, state, exchange=model.processes.exchange)
-
-
-@pytest.mark.parametrize("method", [fused, plain])
+@pytest.mark.parametrize(
+    ("integrator", "build", "exchanges"),
+    [
+        ("rk4", fused, 4 * STEPS),
+        ("rk4", plain_method, 4 * STEPS),
+        ("fbrk3", fused, 1 + 3 * STEPS),
+        ("fbrk3", plain_method, 6 * STEPS),
+    ],
+)
 def test_two_parts_give_the_bits_of_the_whole(
-    larger_mesh: VoronoiMesh, method: Callable[[ShallowWaterModel, State], FusedRungeKutta | RungeKutta]
+    larger_mesh: VoronoiMesh,
+    integrator: Integrator,
+    build: Callable[[ShallowWaterModel, State, Integrator], Method],
+    exchanges: int,
 ) -> None:
+    def method(model: ShallowWaterModel, state: State) -> Method:
+        return build(model, state, integrator)
+
     mesh = larger_mesh.scaled(RADIUS)
     topography, coriolis, start = setting(mesh)
     expected = start.copy()
@@ -128,13 +140,14 @@ def test_two_parts_give_the_bits_of_the_whole(
     for thread in threads:
         thread.join()
     assert not failures
-    assert [process.exchanges for process in parts] == [4 * STEPS, 4 * STEPS]
+    assert [process.exchanges for process in parts] == [exchanges, exchanges]
     np.testing.assert_array_equal(shared.thickness, expected.thickness)
     np.testing.assert_array_equal(shared.normal_velocity, expected.normal_velocity)
     assert np.abs(expected.thickness - start.thickness).max() > 1e-3
 
 
-def test_a_process_alone_takes_the_compiled_steps(icosahedral_mesh: VoronoiMesh) -> None:
+@pytest.mark.parametrize("integrator", ["rk4", "fbrk3"])
+def test_a_process_alone_takes_the_compiled_steps(icosahedral_mesh: VoronoiMesh, integrator: Integrator) -> None:
     """With an exchange that does nothing the stages are called one by one, and give the same bits."""
 
     class Idle(OneProcess):
@@ -146,7 +159,7 @@ def test_a_process_alone_takes_the_compiled_steps(icosahedral_mesh: VoronoiMesh)
     for processes in (OneProcess(), Idle()):
         state = start.copy()
         model = ShallowWaterModel(mesh, topography, coriolis, 9.8, processes=processes)
-        assert FusedRungeKutta(model).advance(state, 20.0, STEPS) == STEPS
+        assert fused_method(model, integrator).advance(state, 20.0, STEPS) == STEPS
         states.append(state)
     np.testing.assert_array_equal(states[0].thickness, states[1].thickness)
     np.testing.assert_array_equal(states[0].normal_velocity, states[1].normal_velocity)
@@ -157,7 +170,7 @@ def test_values_arrive_in_any_order_of_the_tiles(
 ) -> None:
     """On a shuffled mesh tiles have an order of their own; what arrives is told in the order of the mesh."""
     build = cutting.build_tiles
-    monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments: build(*arguments, 60))
+    monkeypatch.setattr("swe.tiles.fused.build_tiles", lambda *arguments, **options: build(*arguments, 60, **options))
     shuffled = mesh_from_points(
         np.random.default_rng(0).permutation(icosahedral_mesh.cell_points), density_name="shuffled"
     ).scaled(RADIUS)

@@ -65,7 +65,7 @@ def test_options_of_any_type_give_the_same_run(small_mesh: VoronoiMesh, tmp_path
         ("checkpoint_interval", [1.0], r"the checkpoint interval is \[1.0\]; it must be a number"),
         ("dissipation", np.array([1.0]), r"the dissipation is array\(\[1.\]\); it must be a number"),
         ("sampling", "means", "the sampling is 'means'; it must be 'point' or 'mean'"),
-        ("integrator", 4, "the integrator is 4; it must be 'rk4' or 'rrk4'"),
+        ("integrator", 4, "the integrator is 4; it must be 'rk4', 'rrk4', 'fbrk3' or 'rfbrk3'"),
         ("output", 3, "output is 3; it must be a path"),
     ],
 )

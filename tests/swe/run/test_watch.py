@@ -10,6 +10,7 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh
 from swe import Callback, InputError, Simulation
+from swe.integrators import STEPPINGS
 
 HOUR = 3600.0
 
@@ -30,7 +31,7 @@ def test_days_go_on_and_until_is_a_day(small_mesh: VoronoiMesh) -> None:
             pieces.run(**wrong)
 
 
-@pytest.mark.parametrize("integrator", ["rk4", "rrk4"])
+@pytest.mark.parametrize("integrator", STEPPINGS)
 def test_callbacks_come_at_their_times_and_change_nothing(
     small_mesh: VoronoiMesh, tmp_path: Path, integrator: str
 ) -> None:
