@@ -104,36 +104,33 @@ def _one_cell(
     dh: Array,
     S: Array,
 ) -> None:
-    """dh_i/dt and S_j as in `swe.tiles.cell_loop`, with twice the outflow G_j from the parts of both cells."""
-    outflow = outflow_P = qG = qG_P = 0.0
-    last = q[vertices[start + (sides - 1) * stride]]
-    before = last
+    """dh_i/dt, and S_j as in `swe.tiles.contributions`, with twice the outflow G_j from the parts of both cells."""
+    passed = q_passed = half_P = q_half_P = 0.0
+    before = q[vertices[start + (sides - 1) * stride]]
     for j in range(sides):
         r = start + j * stride
-        G_j = part[part_start + j * stride] - part[opposite[r]]
+        half = 0.5 * (part[part_start + j * stride] - part[opposite[r]])
         after = q[vertices[r]]
-        qG_j = (before + after) * G_j
+        q_j = before + after
+        q_half = q_j * half
         before = after
-        outflow += G_j
-        outflow_P += P[r] * G_j
-        qG += qG_j
-        qG_P += P[r] * qG_j
-    dh[i] = -0.5 * outflow * inverse_area[i]
-    B = potential[i] + gravity * h[i] + K[i]
-    beyond = 0.5 * outflow - outflow_P
-    q_beyond = 0.5 * qG - qG_P
-    before = last
+        passed += half
+        q_passed += q_half
+        S[r] = q_j * passed + q_passed
+        passed += half
+        q_passed += q_half
+        half_P += P[r] * half
+        q_half_P += P[r] * q_half
+    dh[i] = -0.5 * passed * inverse_area[i]
+    rest = 0.5 * passed - 2.0 * half_P
+    B = potential[i] + gravity * h[i] + K[i] + 0.125 * (0.5 * q_passed - 2.0 * q_half_P)
+    before = q[vertices[start + (sides - 1) * stride]]
     for j in range(sides):
         r = start + j * stride
-        G_j = part[part_start + j * stride] - part[opposite[r]]
         after = q[vertices[r]]
         q_j = before + after
         before = after
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
-        S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
+        S[r] = B + 0.125 * (q_j * (rest + P[r] * passed) + (P[r] * q_passed - S[r]))
 
 
 @inlined
