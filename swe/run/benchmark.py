@@ -6,13 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from swe.configuration import SchemeName
 from swe.equations.kernels import add_scaled
-from swe.errors import RunError
+from swe.errors import InputError, RunError
 from swe.integrators import Integrator
 from swe.run.composition import plain_method
 from swe.run.simulation import Simulation
 from swe.run.threads import worthwhile_threads
-from swe.tiles.fused import FusedMethod
+from swe.tiles.fused import FusedMethod, why_not_fused
 
 ROUNDS = 9
 """The fused step, the plain one and the triad take turns this many times; medians are reported."""
@@ -26,7 +27,7 @@ TRIAD_SIZE = 25_000_000
 
 @dataclass(frozen=True)
 class Timing:
-    """Medians over alternating turns; a step is one of the `integrator`.
+    """Medians over alternating turns; a step is one of the `integrator` with the `scheme`.
 
     `bytes_per_cell_step` counts every array once for each stage that needs it, and `gb_per_s` is that divided by the
     time. `triad_gb_per_s` is the rate of the STREAM triad (McCalpin 1995), a = b + 3 c, in the same process, with two
@@ -44,16 +45,18 @@ class Timing:
     triad_gb_per_s: float
     fraction_of_triad: float
     integrator: Integrator = "rk4"
+    scheme: SchemeName = "ringler2010"
 
 
 def measure(simulation: Simulation) -> Timing:
     """Time steps of the fused and of the plain path from the state of `simulation`, which is left unchanged.
 
-    Raises `RunError` if the state blows up.
+    Raises `RunError` if the state blows up, and `InputError` if plain loops alone can take the steps.
     """
     model, fused, time_step = simulation.model, simulation.method, simulation.configuration.time_step
-    assert isinstance(fused, FusedMethod)
     cells, integrator = model.mesh.n_cells, simulation.configuration.integrator
+    if not isinstance(fused, FusedMethod):
+        raise InputError(f"{why_not_fused(model, integrator)}: there are no fused steps to time, only plain ones")
     plain = plain_method(model, simulation.state, integrator)
     fast, slow = simulation.state.copy(), simulation.state.copy()
     a, b, c = (np.ones(TRIAD_SIZE) for _ in range(3))
@@ -83,6 +86,7 @@ def measure(simulation: Simulation) -> Timing:
         triad_gb_per_s=float(triad),
         fraction_of_triad=float(volume / nanoseconds / triad),
         integrator=integrator,
+        scheme=simulation.configuration.scheme,
     )
 
 

@@ -4,15 +4,14 @@ import json
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from trisk.cli.options import Quiet, Recompute
+from trisk.cli.options import Quiet, Recompute, Scheme
 
 if TYPE_CHECKING:
     from mesh import VoronoiMesh
-    from swe.integrators import Integrator
     from swe.run.benchmark import Timing
 
 CASE = "williamson5"
@@ -31,6 +30,7 @@ def bench(
     integrator: Annotated[
         Literal["rk4", "fbrk3"], typer.Option("--integrator", help="The method whose steps are timed.")
     ] = "rk4",
+    scheme: Scheme = "ringler2010",
     recompute_metrics: Recompute = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
@@ -39,7 +39,9 @@ def bench(
 
     Reports the cost of a step of test case 5, beside plain loops and the memory bandwidth.
     """
-    results = _timings(mesh_file, cells or (), integrator, recompute_metrics, show=not quiet)
+    results = _timings(
+        mesh_file, cells or (), {"integrator": integrator, "scheme": scheme}, recompute_metrics, not quiet
+    )
     if as_json:
         typer.echo(json.dumps([asdict(timing) for timing in results]))
     else:
@@ -49,9 +51,9 @@ def bench(
 
 
 def _timings(
-    mesh_file: Path | None, cells: Sequence[int], integrator: "Integrator", recompute_metrics: bool, show: bool
+    mesh_file: Path | None, cells: Sequence[int], options: dict[str, Any], recompute_metrics: bool, show: bool
 ) -> "list[Timing]":
-    """Timings of test case 5 on the mesh of a file or on meshes of these sizes, announced one by one if `show`."""
+    """Timings of test case 5 on the mesh of a file or on meshes of these sizes, of runs with `options`, announced one by one if `show`."""
     from cases import find_case
     from mesh.generation.generators import MINIMUM_CELLS
     from swe import Simulation
@@ -68,7 +70,7 @@ def _timings(
     for mesh in _meshes(mesh_file, cells or DEFAULT_CELLS, recompute_metrics):
         if show:
             typer.echo(f"timing {mesh.n_cells} cells", err=True)
-        results.append(measure(Simulation(mesh, find_case(CASE), integrator=integrator)))
+        results.append(measure(Simulation(mesh, find_case(CASE), **options)))
     return results
 
 
