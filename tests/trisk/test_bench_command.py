@@ -81,3 +81,16 @@ def test_a_state_that_does_not_survive_is_no_timing(
 
 def test_sizes_where_none_are_given() -> None:
     assert DEFAULT_CELLS == (10242, 40962)
+
+
+def test_schemes_are_timed(trisk: Call, tmp_path: Path, icosahedral_mesh: VoronoiMesh) -> None:
+    path = tmp_path / "mesh.nc"
+    write_mesh(icosahedral_mesh, path)
+    code, out, _ = trisk("bench", "--mesh", path, "--scheme", "consistent", "--json", "-q")
+    assert code == 0
+    (found,) = json.loads(out)
+    assert found["scheme"] == "consistent"
+    assert found["bytes_per_cell_step"] > 1800.0
+    code, _, err = trisk("bench", "--mesh", path, "--scheme", "consistent", "--integrator", "fbrk3", "-q")
+    assert code == 2
+    assert "the scheme is consistent and the integrator fbrk3: there are no fused steps to time" in err

@@ -53,7 +53,10 @@ def bench(
 def _timings(
     mesh_file: Path | None, cells: Sequence[int], options: dict[str, Any], recompute_metrics: bool, show: bool
 ) -> "list[Timing]":
-    """Timings of test case 5 on the mesh of a file or on meshes of these sizes, of runs with `options`, announced one by one if `show`."""
+    """Timings of test case 5, in runs with `options`, on the mesh of a file or on meshes of these sizes.
+
+    They are announced one by one if `show`.
+    """
     from cases import find_case
     from mesh.generation.generators import MINIMUM_CELLS
     from swe import Simulation
