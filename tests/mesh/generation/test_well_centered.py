@@ -7,7 +7,7 @@ from mesh.discrete.quality import triangle_quality
 from mesh.generation.optimizer import Limits, ScvtResult
 from mesh.generation.reseed import SHAKEN_RINGS, reseed
 from mesh.generation.scvt import generate_scvt, optimize
-from mesh.generation.well_centered import GOAL, _penalty, _turn_if_better, _Work, well_center
+from mesh.generation.well_centered import GOAL, _objective, _penalty, _turn_if_better, _Work, well_center
 from mesh.geometry.sphere import normalize
 from mesh.mesh_request import MeshRequest
 from mesh.triangulation.delaunay import delaunay
@@ -141,3 +141,23 @@ def test_sides_turn_where_that_makes_the_worse_triangle_better() -> None:
     np.testing.assert_array_equal(twins, build_twins(triangles, 162))
     np.testing.assert_array_equal(degrees, np.bincount(triangles.ravel()))
     np.testing.assert_array_equal(triangles.ravel()[first_corner], np.arange(162))
+
+
+def test_objective_has_the_gradient_it_says(circle: ScvtResult) -> None:
+    """Also with respect to the lengths of the unknowns, on which the points do not depend."""
+    random, goal, n = np.random.default_rng(1), 0.95, len(circle.points)
+    free = np.arange(5, 45)
+    unknowns = 0.7 * circle.points[free].ravel()
+    anchors = normalize(circle.points[free] + 0.01 * random.normal(size=(40, 3)))
+    weights = random.uniform(1.0, 2.0, 40)
+
+    def value_and_slope(at: np.ndarray) -> tuple[float, np.ndarray]:
+        slope = np.empty(120)
+        others = (circle.points.copy(), free, circle.triangles, anchors, weights, goal, np.empty((n, 3)))
+        return _objective(at, *others, slope), slope
+
+    direction, step = random.normal(size=120), 1e-7
+    (ahead, _), (behind, _) = (value_and_slope(unknowns + sign * step * direction) for sign in (1, -1))
+    slope = value_and_slope(unknowns)[1]
+    assert (ahead - behind) / (2 * step) == pytest.approx(slope @ direction, rel=1e-4)
+    np.testing.assert_allclose((slope * unknowns).reshape(-1, 3).sum(axis=1), 0.0, atol=1e-12)
