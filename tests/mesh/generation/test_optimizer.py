@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesh.density.named import NAMED
-from mesh.generation.optimizer import Limits, Optimizer
+from mesh.generation.optimizer import History, Limits, Optimizer
 from mesh.geometry.sphere import normalize
 
 
@@ -51,3 +51,19 @@ def test_pairs_that_give_no_descent_are_forgotten() -> None:
     assert slope == pytest.approx(-np.dot(gradient, optimizer._current.preconditioned.ravel()), rel=1e-12)
     assert slope == pytest.approx(np.dot(gradient, step), rel=1e-9)
     assert slope < 0.0
+
+
+@pytest.mark.parametrize(
+    ("limits", "reason"),
+    [
+        (Limits(0.5, 9, 9.0), "tolerance"),
+        (Limits(0.5, 2, 3.0), "tolerance"),
+        (Limits(0.4, 2, 9.0), "iterations"),
+        (Limits(0.4, 2, 3.0), "iterations"),
+        (Limits(0.4, 3, 3.0), "seconds"),
+        (Limits(0.4, 3, 3.5), None),
+    ],
+)
+def test_limits_are_reached_where_they_are_met(limits: Limits, reason: str | None) -> None:
+    """After two iterations, at a residual of 0.5, after 3 s."""
+    assert limits.reason_to_stop(History([3.0, 2.0, 1.0], [0.9, 0.3, 0.5], [0.0, 1.0, 3.0])) == reason
