@@ -14,7 +14,7 @@ from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.studies.mesh_study import Plan
-from postprocess.studies.study_figures import conservation_figure, error_figure
+from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure, truncation_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
 from postprocess.studies.study_maps import draw_closeup
 from postprocess.studies.study_report import _write_page, write_mesh_report, write_time_report
@@ -141,6 +141,26 @@ def test_charts_say_what_they_show(study: tuple) -> None:
     ]
     assert {axes.get_xlabel() for axes in errors.axes} == {"mean distance between cells (km)"}
     assert conservation.get_suptitle() == errors.get_suptitle() == "Heading"
+
+
+def test_charts_of_meshes_show_the_rows_of_the_table(study: tuple) -> None:
+    rows = study[1]
+    truncation = truncation_figure(rows, "Heading")
+    names = ("gradient", "divergence", "curl", "perp", "kinetic energy")
+    titles = [f"{name}, {norm}" for norm in ("l2", "l∞") for name in names]
+    assert [axes.get_title() for axes in truncation.axes] == titles
+    bisection, scvt, *slopes = truncation.axes[1].get_lines()
+    for line, ours in ((bisection, rows[0::2]), (scvt, rows[1::2])):
+        np.testing.assert_array_equal(line.get_xdata(), [row["spacing_km"] for row in ours])
+        np.testing.assert_array_equal(line.get_ydata(), [row["truncation_divergence_l2"] for row in ours])
+    for order, line in enumerate(slopes, 1):
+        x, y = line.get_xdata(), line.get_ydata()
+        assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(order)
+    quality = quality_figure(rows, "Heading")
+    assert {axes.get_ylabel() for axes in quality.axes} == {"relative l2 error of thickness"}
+    assert [axes.get_xlabel()[:5] for axes in quality.axes[:3]] == ["σ avg", "q min", "dista"]
+    places = quality.axes[0].collections[1].get_offsets()
+    np.testing.assert_array_equal(places, [[row["sigma_avg"], row["thickness_l2"]] for row in rows[1::2]])
 
 
 def test_closeups_reach_six_cells_from_the_worst(study: tuple) -> None:
