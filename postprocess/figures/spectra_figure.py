@@ -41,7 +41,7 @@ def spectra_figure(spectra: Sequence[Spectra]) -> Figure:
             axes.loglog(np.arange(1, len(values)), values[1:], label=each.name, linewidth=1.2)
         highest = max(len(getattr(each, name)) for each in spectra)
         first = getattr(spectra[0], name)
-        x = np.array([min(10.0, highest / 2.0), highest - 1.0])
+        x = np.array([min(10.0, highest / 2.0, len(first) - 1.0), highest - 1.0])
         for slope, style in zip(GUIDES[name], ("--", ":"), strict=False):
             guide = 2.0 * first[int(x[0])] * (x / x[0]) ** slope
             axes.loglog(x, guide, color="grey", linestyle=style, label=f"slope {slope:.3g}")

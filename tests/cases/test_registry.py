@@ -231,6 +231,14 @@ def test_cases_show_name_title_and_what_is_not_the_default(splash: Path) -> None
             "mine.py:Mine",
             "convergence_order of .*mine.py:Mine is 'two'; give a number or None",
         ),
+        *(
+            (
+                HEAD + "class Mine(Case):" + METHODS + f"    title, reference = {texts}\n",
+                "mine.py:Mine",
+                f"title and reference of .*mine.py:Mine are {re.escape(words)}; give texts",
+            )
+            for texts, words in (("3, 'a paper'", "3 and 'a paper'"), ("'Mine', None", "'Mine' and None"))
+        ),
     ],
 )
 def test_file_without_a_case_is_refused(content: str | None, address: str, words: str, tmp_path: Path) -> None:

@@ -5,6 +5,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import swe.parallel.exact_sum
+from mesh.compiled_cache import SourcesLocator
+
 PROGRAM = """
 import numpy as np
 from swe.parallel.exact_sum import _words, exact_sum
@@ -25,3 +28,21 @@ def test_processes_that_start_at_once_share_the_cache(tmp_path: Path) -> None:
         assert out.split()[0] == "1.0"
     out, _ = start(tmp_path).communicate(timeout=300)
     assert out.split() == ["1.0", "1"]
+
+
+def test_the_folder_is_made_anew_and_what_older_sources_left_goes(tmp_path: Path) -> None:
+    """A folder may be gone between the import and the first call, as after `make clean`."""
+    function, folder = swe.parallel.exact_sum._add.py_func, tmp_path / "gone"
+    locator = SourcesLocator(function, swe.parallel.exact_sum.__file__, str(folder))
+    locator.ensure_cache_path()
+    assert folder.is_dir()
+    own = f"exact_sum._add-{locator.get_disambiguator()}.py311"
+    for name in (
+        f"{own}.nbi",
+        f"{own}.1.nbc",
+        "exact_sum._add-9-0123456789abcdef.py311.nbi",
+        "exact_sum._words-1-0.nbi",
+    ):
+        (folder / name).touch()
+    locator.ensure_cache_path()
+    assert {path.name for path in folder.iterdir()} == {f"{own}.nbi", f"{own}.1.nbc", "exact_sum._words-1-0.nbi"}

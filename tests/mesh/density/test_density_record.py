@@ -1,6 +1,8 @@
+import hashlib
 from dataclasses import replace
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 from density_files import EAST, NORTH, field, write_file
@@ -15,7 +17,7 @@ from mesh.generation.optimizer import Limits
 from mesh.generation.pipeline import mesh_of
 from mesh.generation.scvt import generate_scvt
 from mesh.generation.well_centered import well_center
-from mesh.geometry.sphere import normalize
+from mesh.geometry.sphere import from_lonlat, normalize
 from mesh.mesh_request import MeshRequest
 
 TOLERANCE = 3e-5
@@ -86,6 +88,16 @@ def test_functions_are_not_in_the_file_but_may_be_given(tmp_path: Path) -> None:
     assert mesh_quality(read, towards_x).residual <= 1e-6
 
 
+def test_sources_tell_values_and_places_of_points(tmp_path: Path) -> None:
+    """By their sum, in which nothing else is: it must be the same in every program that reads the field."""
+    lon, lat = np.radians(LONGITUDE), np.radians(np.linspace(-80.0, 80.0, 36))
+    values = field(LONGITUDE, np.degrees(lat))
+    coordinates = {"lat": (("n",), lat, {"units": "rad"}), "lon": (("n",), lon, {"units": "rad"})}
+    density = read_density(write_file(tmp_path / "points.nc", **coordinates, width=(("n",), values, {})), "width")
+    digest = hashlib.sha256(values.tobytes() + from_lonlat(lon, lat).tobytes()).hexdigest()
+    assert density.digest == digest
+
+
 def test_names_of_densities() -> None:
     assert [name_of(density) for density in NAMED.values()] == list(NAMED)
     assert name_of(RefinedBox()) == "refined-box"
@@ -96,8 +108,13 @@ def test_held_generators_do_not_count(tmp_path: Path) -> None:
     box = RefinedBox()
     coarse = generate_scvt(MeshRequest(162))
     result = nested_scvt(coarse.points, coarse.triangles, box, limits=Limits(1e-5))
-    read = reread(mesh_of(result, box), tmp_path / "mesh.nc")
     assert result.fixed is not None
+    read = reread(mesh_of(result, box), tmp_path / "mesh.nc")
+    with netCDF4.Dataset(tmp_path / "mesh.nc") as file:
+        fixed = file["fixedCell"]
+        assert fixed.units == "1"
+        assert fixed.long_name == "1 where the generator was held while others moved, 0 elsewhere"
+        assert fixed[:].tolist() == np.where(result.fixed, 1, 0).tolist()
     np.testing.assert_array_equal(read.fixed_cells, result.fixed)
     assert mesh_quality(read).residual == pytest.approx(result.history.residual[-1], rel=1e-3)
     assert mesh_quality(replace(read, fixed_cells=None)).residual > 1e-3

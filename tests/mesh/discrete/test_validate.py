@@ -56,7 +56,7 @@ DAMAGE = [
     ("cells_on_vertex", swap_columns(5, 0, 1), "vertices 5 .*cellsOnVertex"),
     ("edges_on_vertex", swap_columns(5, 0, 1), "vertices 5 .*edgesOnVertex"),
     ("edges_on_cell", swap_columns(100, 0, 1), "cells 100 .*(cellsOnCell|edgesOnCell)"),
-    ("cells_on_cell", swap_columns(100, 0, 1), "cells 100 .*cellsOnCell"),
+    ("cells_on_cell", swap_columns(100, 0, 1), "cells 100 .*: cellsOnCell is not the cell across edgesOnCell$"),
     ("vertices_on_cell", swap_columns(100, 0, 1), "cells 100 .*verticesOnCell"),
     ("edges_on_edge", swap_columns(9, 2, 3), "edges 9 .*edgesOnEdge"),
     ("edges_on_edge", assign((9, 2), 10**6), "edges 9 .*edgesOnEdge holds an index outside"),

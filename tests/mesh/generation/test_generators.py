@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+import mesh.generation.generators
 from mesh import MeshError
-from mesh.generation.generators import icosahedral_level, icosahedral_points, starting_points
+from mesh.generation.generators import MAXIMUM_CELLS, icosahedral_level, icosahedral_points, starting_points
 from mesh.geometry.sphere import fibonacci_points
 
 
@@ -44,3 +45,16 @@ def test_default_start_follows_the_number() -> None:
 def test_wrong_requests_say_what_to_do(cells: int, start: str | None, words: str) -> None:
     with pytest.raises(MeshError, match=words):
         starting_points(cells, start)
+
+
+def test_the_most_cells_are_those_whose_half_edges_have_numbers_of_32_bits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """n cells have 2 n - 4 triangles of three half-edges each."""
+    assert 3 * (2 * MAXIMUM_CELLS - 4) < 2**31 <= 3 * (2 * (MAXIMUM_CELLS + 3) - 4)
+    with pytest.raises(
+        MeshError, match=f"mesh of {10**13} cells has too many half-edges to number; ask for at most 35"
+    ):
+        starting_points(10**13)
+    monkeypatch.setattr(mesh.generation.generators, "MAXIMUM_CELLS", 20)
+    assert len(starting_points(20)) == 20
+    with pytest.raises(MeshError, match="mesh of 21 cells has too many half-edges to number; ask for at most 20"):
+        starting_points(21)

@@ -2,16 +2,20 @@ import numpy as np
 import pytest
 
 from mesh import mesh_from_points, mesh_quality
-from mesh.density.named import NAMED
+from mesh.density.named import NAMED, uniform
 from mesh.discrete.quality import triangle_quality
 from mesh.generation.optimizer import Limits, ScvtResult
 from mesh.generation.reseed import SHAKEN_RINGS, reseed
 from mesh.generation.scvt import generate_scvt, optimize
-from mesh.generation.well_centered import GOAL, _penalty, well_center
+from mesh.generation.well_centered import GOAL, _objective, _penalty, _turn_if_better, _Work, well_center
+from mesh.geometry.sphere import normalize
 from mesh.mesh_request import MeshRequest
 from mesh.triangulation.delaunay import delaunay
+from mesh.triangulation.half_edges import build_twins, first_corners
 from mesh.triangulation.ordering import sort_triangles
+from mesh.triangulation.repair import flip
 from mesh.triangulation.triangle_quality import near_bad_triangles, qualities
+from tests.mesh.plain_moments import mass_and_moment
 
 CIRCLE = NAMED["refined-circle"]
 
@@ -107,3 +111,53 @@ def test_only_generators_near_bad_triangles_are_shaken() -> None:
 
     reseed(start, converge, wanted=0.9, tries=1, seed=0, fixed=fixed)
     np.testing.assert_array_equal(asked, [near])
+
+
+def test_a_round_moves_the_cells_towards_their_centroids() -> None:
+    """Where no triangle is near the goal there is no penalty: each cell goes to the centroid of its region."""
+    start = generate_scvt(MeshRequest(162)).points
+    points = normalize(start + 0.02 * np.random.default_rng(0).normal(size=start.shape))
+    work = _Work(points, delaunay(points), uniform, None, np.inf)
+    _, moment = mass_and_moment(points, delaunay(points))
+    free = np.zeros(162, bool)
+    free[[3, 50, 120]] = True
+    work.relax(free, 0.1)
+    np.testing.assert_allclose(work.points[free], normalize(moment)[free], atol=1e-6)
+    np.testing.assert_array_equal(work.points[~free], points[~free])
+
+
+def test_sides_turn_where_that_makes_the_worse_triangle_better() -> None:
+    """One side of a Delaunay triangulation is turned the wrong way, and is turned back."""
+    points = np.ascontiguousarray(generate_scvt(MeshRequest(162)).points)
+    triangles = np.array(delaunay(points), np.int32, order="C")
+    twins = build_twins(triangles, 162)
+    first_corner, degrees = first_corners(triangles, 162)
+    arrays = (triangles, twins, first_corner, degrees)
+    flip(*arrays, 7, twins.ravel()[7])
+    assert qualities(points, triangles).min() < 0.8
+    assert _turn_if_better(points, *arrays, 0.0) == 0
+    assert _turn_if_better(points, *arrays, 0.9) == 1
+    np.testing.assert_array_equal(sort_triangles(triangles), sort_triangles(delaunay(points)))
+    np.testing.assert_array_equal(twins, build_twins(triangles, 162))
+    np.testing.assert_array_equal(degrees, np.bincount(triangles.ravel()))
+    np.testing.assert_array_equal(triangles.ravel()[first_corner], np.arange(162))
+
+
+def test_objective_has_the_gradient_it_says(circle: ScvtResult) -> None:
+    """Also with respect to the lengths of the unknowns, on which the points do not depend."""
+    random, goal, n = np.random.default_rng(1), 0.95, len(circle.points)
+    free = np.arange(5, 45)
+    unknowns = 0.7 * circle.points[free].ravel()
+    anchors = normalize(circle.points[free] + 0.01 * random.normal(size=(40, 3)))
+    weights = random.uniform(1.0, 2.0, 40)
+
+    def value_and_slope(at: np.ndarray) -> tuple[float, np.ndarray]:
+        slope = np.empty(120)
+        others = (circle.points.copy(), free, circle.triangles, anchors, weights, goal, np.empty((n, 3)))
+        return _objective(at, *others, slope), slope
+
+    direction, step = random.normal(size=120), 1e-7
+    (ahead, _), (behind, _) = (value_and_slope(unknowns + sign * step * direction) for sign in (1, -1))
+    slope = value_and_slope(unknowns)[1]
+    assert (ahead - behind) / (2 * step) == pytest.approx(slope @ direction, rel=1e-4)
+    np.testing.assert_allclose((slope * unknowns).reshape(-1, 3).sum(axis=1), 0.0, atol=1e-12)

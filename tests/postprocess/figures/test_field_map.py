@@ -177,6 +177,26 @@ def test_meridians_and_parallels_of_windows_are_named(ax: Axes, small_mesh: Voro
     assert "90°S" not in names
 
 
+@pytest.mark.parametrize(("latitude", "side"), [(40.0, -1.0), (89.0, -1.0), (-40.0, -1.0), (-79.0, 1.0), (-90.0, 1.0)])
+def test_meridians_are_named_to_the_south_but_near_the_south_pole(
+    ax: Axes, small_mesh: VoronoiMesh, latitude: float, side: float
+) -> None:
+    """At four tenths of the way from the middle to a corner of the window, so that no two names meet at a pole."""
+    trisk.plot_field(small_mesh, "area_cell", ax, centre=(0.0, latitude), extent=20.0)
+    (place,) = (text.get_position() for text in ax.texts if text.get_text() == "0°")
+    corner = np.arcsin(np.sqrt(2.0) * np.sin(np.radians(10.0)))
+    assert place == pytest.approx((0.0, side * np.sin(0.4 * corner)), abs=1e-12)
+
+
+@pytest.mark.parametrize("centre", [(0.0, 0.0), (200.0, 0.0), (30.0, 40.0)])
+def test_cylindrical_maps_without_extent_show_the_globe(
+    ax: Axes, small_mesh: VoronoiMesh, centre: tuple[float, float]
+) -> None:
+    trisk.plot_field(small_mesh, "area_cell", ax, centre=centre, projection="cylindrical")
+    assert ax.get_xlim() == (centre[0] - 180.0, centre[0] + 180.0)
+    assert ax.get_ylim() == (-90.0, 90.0)
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

@@ -146,6 +146,8 @@ def test_compared_maps_have_one_scale_for_all() -> None:
         assert [image.get_clim() for image in images[:2]] == [limits, limits]
         for image, panel in zip(images, panels, strict=False):
             np.testing.assert_array_equal(np.asarray(image.get_array()).ravel(), panel)
+        x, y = 2.0 * np.sqrt(2.0), np.sqrt(2.0)
+        np.testing.assert_allclose([image.get_extent() for image in images[:2]], 2 * [[-x, x, -y, y]], atol=1e-12)
         assert bar_label(figure) == "depth (m)"
         assert [axes.get_title() for axes in figure.axes[:2]] == ["one", "other"]
         assert figure.get_suptitle() == "Heading"
@@ -165,8 +167,12 @@ def test_grid_of_the_maps_stands_every_30_degrees(figures: dict[str, Figure]) ->
 
 
 def test_rims_of_maps_hide_nothing(figures: dict[str, Figure]) -> None:
-    for axes in figures["surface_height"].axes[:2]:
+    """The ellipse of the Mollweide map has half axes of 2 and 1 times the root of 2, the view from above radius 1."""
+    half_axes = [(2.0 * np.sqrt(2.0), np.sqrt(2.0)), (1.0, 1.0)]
+    for axes, (x, y) in zip(figures["surface_height"].axes[:2], half_axes, strict=True):
         (rim,) = axes.patches
+        box = rim.get_path().get_extents(rim.get_patch_transform())
+        np.testing.assert_allclose(box.extents, [-x, -y, x, y], atol=1e-12)
         assert rim.get_facecolor()[3] == 0.0
         assert rim.get_edgecolor() == (0.0, 0.0, 0.0, 1.0)
         assert axes.collections[0].get_clip_path() is not None

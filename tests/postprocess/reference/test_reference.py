@@ -53,6 +53,11 @@ def test_file_keeps_all_but_a_part_of_the_uncertainty(reference: Reference, tmp_
     with netCDF4.Dataset(path) as file:
         units = {"vorticity": "s-1", "divergence": "s-1", "surface_height": "m"}
         assert {name: file[name].units for name in units} == units
+        assert [file[name].long_name for name in units] == [f"harmonics of {name}" for name in units]
+        assert [file[name].units for name in ("day", "truncation", "difference")] == ["d", "1", "1"]
+        assert file["day"].long_name == "days since the start"
+        assert file["truncation"].long_name == "truncations"
+        assert file["difference"].long_name.endswith("of runs of lower truncation against this one")
     read = read_reference(path)
     assert (read.case, read.days, read.truncations) == (reference.case, reference.days, reference.truncations)
     assert (read.history, read.settings) == ("made by a test", reference.settings)

@@ -8,7 +8,7 @@ import pytest
 
 from cases import Williamson2
 from mesh import MeshError, scvt_mesh
-from postprocess.runs.reading import read_run
+from postprocess.runs.reading import days_in_words, read_run
 from swe import Simulation
 from swe.errors import InputError
 
@@ -49,3 +49,17 @@ def test_mesh_that_is_none_is_told_as_such(directory: Path) -> None:
     (directory / "mesh.nc").write_text("nothing")
     with pytest.raises(MeshError, match=r"mesh\.nc: not a readable NetCDF file"):
         read_run(directory)
+
+
+@pytest.mark.parametrize(
+    ("days", "words"),
+    [
+        ([], ""),
+        ([0.5], "0.5"),
+        (range(8), "0, 1, 2, 3, 4, 5, 6, 7"),
+        (range(9), "0, 1, 2, ..., 8"),
+        (range(50), "0, 1, 2, ..., 49"),
+    ],
+)
+def test_long_lists_of_days_are_shortened(days: list[float], words: str) -> None:
+    assert days_in_words(days) == words

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from cases import find_case
@@ -13,8 +14,10 @@ from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.studies.mesh_study import Plan
+from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure, truncation_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
-from postprocess.studies.study_report import write_mesh_report, write_time_report
+from postprocess.studies.study_maps import draw_closeup
+from postprocess.studies.study_report import _write_page, write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 
@@ -110,6 +113,64 @@ def test_report_holds_everything(plan: Plan, study: tuple) -> None:
     assert len(pictures) == 6
     for path in pictures:
         assert imread(path).std() > 0.05, f"{path} is blank"
+
+
+def test_a_page_is_written_over_the_one_before(tmp_path: Path) -> None:
+    for text in ("first", "second"):
+        page = _write_page(tmp_path, "Title", text, ["trisk"], {}, {"chart": Figure()})
+        assert f"<p>{text}</p>" in page.read_text()
+    assert [path.name for path in (tmp_path / "figures").iterdir()] == ["chart.png"]
+
+
+def test_charts_say_what_they_show(study: tuple) -> None:
+    members, rows = study
+    conservation = conservation_figure(members, "Heading")
+    assert [axes.get_title() for axes in conservation.axes] == [
+        "|mass change|",
+        "|absolute vorticity change|",
+        "|total energy change of total|",
+        "|potential enstrophy change|",
+    ]
+    assert {(axes.get_xlabel(), axes.get_ylabel()) for axes in conservation.axes} == {("day", "relative change")}
+    errors = error_figure(rows, "Heading")
+    assert [axes.get_title() for axes in errors.axes] == [
+        "relative error of thickness, l2",
+        "relative error of thickness, l∞",
+        "relative error of normal velocity, l2",
+        "relative error of vorticity, l2",
+    ]
+    assert {axes.get_xlabel() for axes in errors.axes} == {"mean distance between cells (km)"}
+    assert conservation.get_suptitle() == errors.get_suptitle() == "Heading"
+
+
+def test_charts_of_meshes_show_the_rows_of_the_table(study: tuple) -> None:
+    rows = study[1]
+    truncation = truncation_figure(rows, "Heading")
+    names = ("gradient", "divergence", "curl", "perp", "kinetic energy")
+    titles = [f"{name}, {norm}" for norm in ("l2", "l∞") for name in names]
+    assert [axes.get_title() for axes in truncation.axes] == titles
+    bisection, scvt, *slopes = truncation.axes[1].get_lines()
+    for line, ours in ((bisection, rows[0::2]), (scvt, rows[1::2])):
+        np.testing.assert_array_equal(line.get_xdata(), [row["spacing_km"] for row in ours])
+        np.testing.assert_array_equal(line.get_ydata(), [row["truncation_divergence_l2"] for row in ours])
+    for order, line in enumerate(slopes, 1):
+        x, y = line.get_xdata(), line.get_ydata()
+        assert np.log(y[1] / y[0]) / np.log(x[1] / x[0]) == pytest.approx(order)
+    quality = quality_figure(rows, "Heading")
+    assert {axes.get_ylabel() for axes in quality.axes} == {"relative l2 error of thickness"}
+    assert [axes.get_xlabel()[:5] for axes in quality.axes[:3]] == ["σ avg", "q min", "dista"]
+    places = quality.axes[0].collections[1].get_offsets()
+    np.testing.assert_array_equal(places, [[row["sigma_avg"], row["thickness_l2"]] for row in rows[1::2]])
+
+
+def test_closeups_reach_six_cells_from_the_worst(study: tuple) -> None:
+    member = study[0][1]
+    axes = draw_closeup(Figure().subplots(), member, 0.5)
+    worst = int(np.argmax(np.abs(mesh_study.thickness_error(member, 0.5))))
+    reach = 6.0 * np.sqrt(member.mesh.area_cell[worst]) / member.mesh.sphere_radius
+    assert axes.get_xlim() == axes.get_ylim() == pytest.approx((-reach, reach))
+    longitude, latitude = np.degrees((member.mesh.lon_cell[worst], member.mesh.lat_cell[worst]))
+    assert axes.get_title() == f"scvt\n{longitude:.1f}°E {abs(latitude):.1f}°{'N' if latitude > 0.0 else 'S'}"
 
 
 def test_a_run_that_fails_is_a_line_of_the_table(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

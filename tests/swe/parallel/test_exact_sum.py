@@ -29,3 +29,6 @@ def test_extremes() -> None:
     assert exact_sum(np.empty(0)) == 0.0
     assert math.isnan(exact_sum(np.array([1.0, np.nan])))
     assert exact_sum(np.array([1.0, -np.inf])) == -np.inf
+    assert exact_sum(np.array([largest, largest])) == np.inf
+    assert exact_sum(np.array([-largest, 1.0, -largest])) == -np.inf
+    assert exact_sum(np.array([largest, largest, -largest])) == largest

@@ -1,6 +1,7 @@
 """Options, paths and parameters of any type that means one, and a run that goes on after each."""
 
 import contextlib
+import inspect
 import json
 import warnings
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from cases import CASES, LakeAtRest, Williamson2, Williamson5, find_case
 from cases.parameters import with_parameters
 from mesh import VoronoiMesh, scvt_mesh
 from swe import RunError, Simulation
+from swe.configuration import Options
 from swe.errors import InputError
 
 HOUR = 3600.0
@@ -147,3 +149,11 @@ def test_the_error_of_earlier_versions_is_the_same() -> None:
     from swe.errors import InputError, SetupError
 
     assert SetupError is InputError
+
+
+def test_defaults_are_those_of_simulations_and_of_the_page() -> None:
+    options = vars(Options())
+    parameters = inspect.signature(Simulation).parameters
+    assert options == {name: parameters[name].default for name in options}
+    assert (options["sampling"], options["integrator"]) == ("point", "rk4")
+    assert (options["anticipation"], options["dissipation"], options["time_step"]) == (0.0, 0.0, None)
