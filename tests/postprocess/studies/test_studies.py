@@ -175,7 +175,7 @@ def test_closeups_reach_six_cells_from_the_worst(study: tuple) -> None:
 
 def test_a_run_that_fails_is_a_line_of_the_table(plan: Plan, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Courant number 5: the run blows up, the study goes on and says so."""
-    monkeypatch.setattr("swe.run.composition.DEFAULT_COURANT_NUMBER", 5.0)
+    monkeypatch.setattr("swe.integrators.DEFAULT_COURANT_NUMBER", 5.0)
     small = dataclasses.replace(plan, folder=tmp_path, families=("scvt",), cells=(162,), days=20.0, error_day=20.0)
     lines: list[str] = []
     members, rows = mesh_study.carry_out(small, False, lines.append)
