@@ -165,7 +165,7 @@ def test_charts_of_meshes_show_the_rows_of_the_table(study: tuple) -> None:
 
 def test_closeups_reach_six_cells_from_the_worst(study: tuple) -> None:
     member = study[0][1]
-    axes = draw_closeup(Figure().subplots(), member, 0.5)
+    axes = draw_closeup(Figure().subplots(), member, 0.5, member.family)
     worst = int(np.argmax(np.abs(mesh_study.thickness_error(member, 0.5))))
     reach = 6.0 * np.sqrt(member.mesh.area_cell[worst]) / member.mesh.sphere_radius
     assert axes.get_xlim() == axes.get_ylim() == pytest.approx((-reach, reach))
