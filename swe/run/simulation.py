@@ -43,6 +43,7 @@ from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import Schedule, last_shared
 from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
 from swe.stepping.time_stepping import RungeKutta
+from swe.tiles.dissipation import terms_over_tiles
 from swe.tiles.fused import FusedRungeKutta, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
@@ -190,6 +191,8 @@ class Simulation:
 
     def _build_stepper(self) -> Stepper:
         terms = self.model.terms_after_steps
+        if self.loops == "fused":
+            terms = terms_over_tiles(self.mesh, terms)
         if self.configuration.integrator == "rrk4":
             return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
         return FixedSteps(SplitMethod(self.method, terms) if terms else self.method)

@@ -15,7 +15,6 @@ length, the last block with cells of none; cells with more have their rings stor
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +22,15 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, Signs
 from mesh.discrete.sides import Sides
 from mesh.discrete.walls import closed_mesh
-from mesh.triangulation.ordering import hilbert_order, inverse_order
+from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.tiles.layout import LANES, MIRROR, RING, TileArrays
+from swe.tiles.numbering import LocalNumbers, order_of_cells, packed
 from swe.tiles.rings import in_whole_blocks, places_in_blocks, ring_array, ring_size, slots_of_sides, whole_blocks
 
 CELLS_PER_TILE = 2560
 """Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
-
-DISORDER = 1.5
-"""A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -116,7 +113,7 @@ def build_tiles(
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
     signs = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
     whole, mesh = mesh, closed_mesh(mesh)
-    cell_order = _cell_order(mesh, first_cell)
+    cell_order = order_of_cells(mesh, first_cell)
     cell_rank = inverse_order(cell_order)
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
@@ -135,9 +132,9 @@ def build_tiles(
                 f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
             )
         return build_tiles(whole, topography, coriolis, gravity, cells_per_tile // 2, sides=sides)
-    halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
-    indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
-    metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
+    halo, halo_parts = packed([piece.halo for piece in pieces], np.uint32)
+    indices, index_parts = packed([piece.indices for piece in pieces], np.uint16)
+    metrics, metric_parts = packed([piece.metrics for piece in pieces], np.float64)
     return Tiles(
         cell_order=None if _is_identity(cell_order) else cell_order,
         edge_order=None if _is_identity(edge_order) else edge_order,
@@ -185,9 +182,9 @@ class _Cutter:
         self.on_cell, self.on_vertex = signs
         self.sides = sides
         self.prefix = _area_passed(mesh)
-        self.local_cells = _LocalNumbers(mesh.n_cells)
-        self.local_edges = _LocalNumbers(mesh.n_edges)
-        self.local_vertices = _LocalNumbers(mesh.n_vertices)
+        self.local_cells = LocalNumbers(mesh.n_cells)
+        self.local_edges = LocalNumbers(mesh.n_edges)
+        self.local_vertices = LocalNumbers(mesh.n_vertices)
 
     def cut(self, own_cells: Index, own_edges: Index) -> _Piece:
         """The tile that owns these cells and edges, given by their numbers in the mesh."""
@@ -298,49 +295,6 @@ class _Cutter:
         return slots[self.local_cells.of(cell), side]
 
 
-class _LocalNumbers:
-    """Local numbers, within a tile, of entities of one kind, in the order in which they first appear."""
-
-    def __init__(self, size: int) -> None:
-        self._number = np.full(size, -1)
-        self._entities: list[Index] = []
-        self._count = 0
-
-    def add(self, entities: Index) -> None:
-        """Number those that have no number yet."""
-        fresh = entities.ravel()[self._number[entities.ravel()] < 0]
-        fresh = fresh[np.sort(np.unique(fresh, return_index=True)[1])]
-        self._number[fresh] = self._count + np.arange(len(fresh))
-        self._entities.append(fresh)
-        self._count += len(fresh)
-
-    def known(self) -> Index:
-        """The entities in the order of their local numbers."""
-        return np.concatenate(self._entities)
-
-    def of(self, entities: Index) -> Index:
-        """Local numbers of `entities`; undefined for those that have none."""
-        return self._number[entities]
-
-    def forget(self) -> None:
-        """Forget all numbers, to start on another tile."""
-        for entities in self._entities:
-            self._number[entities] = -1
-        self._entities, self._count = [], 0
-
-
-def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
-    """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
-    own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
-    tile = np.searchsorted(first_cell, own, side="right")
-
-    def parted(order: Index) -> int:
-        ends = tile[inverse_order(order)][mesh.cells_on_edge]
-        return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
-
-    return own if parted(own) <= DISORDER * parted(curve) else curve
-
-
 def _is_identity(order: Index) -> bool:
     return bool(np.all(order == np.arange(len(order))))
 
@@ -359,11 +313,3 @@ def _area_passed(mesh: VoronoiMesh) -> Array:
 def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
     """Places of U, or of -U where not `positive`."""
     return np.where(positive, numbers, numbers + MIRROR)
-
-
-def _packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:
-    """All parts of all tiles in one array, and the places where they begin, (n_tiles, parts + 1)."""
-    sizes = np.array([[part.size for part in piece] for piece in pieces])
-    ends = np.cumsum(sizes).reshape(sizes.shape)
-    starts = np.concatenate([ends[:, :1] - sizes[:, :1], ends], axis=1)
-    return np.concatenate([part.ravel() for piece in pieces for part in piece]).astype(dtype), starts
