@@ -19,6 +19,7 @@ from swe.configuration import (
     SchemeName,
 )
 from swe.constants import SECONDS_PER_DAY
+from swe.damping.over_tiles import terms_over_tiles
 from swe.diagnostics.invariants import Invariants, measure_invariants
 from swe.diagnostics.outputs import chosen_fields
 from swe.equations.soundness import problem_at_vertices, problem_with_state
@@ -43,7 +44,6 @@ from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import Schedule, last_shared
 from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
 from swe.stepping.time_stepping import RungeKutta
-from swe.tiles.dissipation import terms_over_tiles
 from swe.tiles.fused import FusedRungeKutta, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000

@@ -10,12 +10,12 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.voronoi_mesh import VoronoiMesh
+from swe.damping.cutting import cut_for_dissipation
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.terms import Term
 from swe.state import State
-from swe.tiles.dissipation_cutting import cut_for_dissipation
 from swe.tiles.layout import LANES, MIRROR, RING, Arrays, TileArrays, compiled, inlined
-from swe.tiles.vectors import use_widest_vectors
+from swe.tiles.tile_kernels import use_widest_vectors
 
 
 class DissipationOverTiles(Term):

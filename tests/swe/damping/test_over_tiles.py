@@ -10,12 +10,12 @@ from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
 from swe import Simulation, State
 from swe.configuration import Integrator
+from swe.damping import cutting
+from swe.damping.cutting import cut_for_dissipation
+from swe.damping.over_tiles import DissipationOverTiles, terms_over_tiles
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.errors import InputError
 from swe.run import simulation as simulation_module
-from swe.tiles import dissipation_cutting
-from swe.tiles.dissipation import DissipationOverTiles, terms_over_tiles
-from swe.tiles.dissipation_cutting import cut_for_dissipation
 from tests.cut_mesh import without_cap
 
 RADIUS = 6.4e6
@@ -84,11 +84,11 @@ def test_it_does_not_depend_on_threads(larger_mesh: VoronoiMesh, monkeypatch: py
 
 def test_tiles_shrink_until_they_fit(icosahedral_mesh: VoronoiMesh, monkeypatch: pytest.MonkeyPatch) -> None:
     assert cut_for_dissipation(icosahedral_mesh).n_tiles == 1
-    monkeypatch.setattr(dissipation_cutting, "MIRROR", 800)
+    monkeypatch.setattr(cutting, "MIRROR", 800)
     smaller = cut_for_dissipation(icosahedral_mesh)
     assert smaller.n_tiles > 3
     assert sum(len(smaller.arrays[number]) for number in (0, 2)) > icosahedral_mesh.n_edges
-    monkeypatch.setattr(dissipation_cutting, "MIRROR", 5)
+    monkeypatch.setattr(cutting, "MIRROR", 5)
     with pytest.raises(InputError, match=r"dissipation at a cell needs the \d+ edges around it; the limit is 4"):
         cut_for_dissipation(icosahedral_mesh)
 
