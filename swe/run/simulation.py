@@ -84,6 +84,9 @@ class Simulation:
     scheme
         "ringler2010", that of the published results, or "consistent", whose kinetic energy is exact for uniform flow on
         cells of any shape, and whose errors therefore stay small on irregular meshes (`swe.equations.consistent`).
+    upwinding
+        How far potential vorticity is blended towards the value upstream, from 0 to 1, so that potential enstrophy
+        decays at no cost in energy and whatever the time step (`swe.equations.upwinding`).
     fields
         Names of the fields in snapshots, from `swe.diagnostics.outputs.FIELDS`; all of them by default.
     overwrite
@@ -123,6 +126,7 @@ class Simulation:
         anticipation: float = 0.0,
         dissipation: float = 0.0,
         scheme: SchemeName = "ringler2010",
+        upwinding: float = 0.0,
         fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
@@ -137,6 +141,7 @@ class Simulation:
             anticipation,
             dissipation,
             scheme,
+            upwinding,
         )
         options.require_suitable(case.name, case.prescribed_wind)
         output_fields = chosen_fields(fields)
