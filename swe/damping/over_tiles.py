@@ -14,8 +14,7 @@ from swe.damping.cutting import cut_for_dissipation
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.terms import Term
 from swe.state import State
-from swe.tiles.layout import LANES, MIRROR, RING, Arrays, TileArrays, compiled, inlined
-from swe.tiles.tile_kernels import use_widest_vectors
+from swe.tiles.layout import LANES, MIRROR, RING, Arrays, TileArrays, compiled, inlined, use_widest_vectors
 
 
 class DissipationOverTiles(Term):

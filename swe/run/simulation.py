@@ -78,7 +78,7 @@ class Simulation:
         "rk4", the classical method, or "rrk4", whose steps are relaxed to conserve total energy (`Relaxation`).
     anticipation
         Fraction of the time step by which potential vorticity is anticipated, 0.5 in the literature, so that potential
-        enstrophy decays at no cost in energy (Sadourny and Basdevant 1985); plain loops then take the steps.
+        enstrophy decays at no cost in energy (Sadourny and Basdevant 1985).
     dissipation
         Coefficient of the biharmonic dissipation, m4/s, applied after each step.
     scheme

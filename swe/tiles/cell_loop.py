@@ -5,6 +5,26 @@ from swe.tiles.layout import LANES, RING, inlined
 
 
 @inlined
+def first_value(q: Array, vertices: Index | None, last_side: int) -> float:
+    """Q at the vertex before the first side of a cell, which is that after the last one, if sides have vertices."""
+    if vertices is None:
+        return 0.0
+    return float(q[vertices[last_side]])
+
+
+@inlined
+def twice_mean(q: Array, vertices: Index | None, side: int, before: float) -> tuple[float, float]:
+    """Twice q at a side, and q at the vertex after it; `before` is that at the vertex before it.
+
+    Without `vertices`, q holds the first at the places of the sides.
+    """
+    if vertices is None:
+        return q[side], before
+    after = q[vertices[side]]
+    return before + after, after
+
+
+@inlined
 def _one_cell(
     i: int,
     start: int,
@@ -16,7 +36,7 @@ def _one_cell(
     q: Array,
     edges: Index,
     cells: Index,
-    vertices: Index,
+    vertices: Index | None,
     ratio: Array,
     P: Array,
     inverse_area: Array,
@@ -34,7 +54,7 @@ def _one_cell(
     The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
     """
     outflow = outflow_P = qG = qG_P = energy = 0.0
-    last = q[vertices[start + (sides - 1) * stride]]
+    last = first_value(q, vertices, start + (sides - 1) * stride)
     before = last
     for j in range(sides):
         r = start + j * stride
@@ -42,9 +62,8 @@ def _one_cell(
         normal = ratio[r] * U_j
         energy += normal * U_j
         G_j = (h[i] + h[cells[r]]) * normal
-        after = q[vertices[r]]
-        qG_j = (before + after) * G_j
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
+        qG_j = q_j * G_j
         outflow += G_j
         outflow_P += P[r] * G_j
         qG += qG_j
@@ -57,9 +76,7 @@ def _one_cell(
     for j in range(sides):
         r = start + j * stride
         G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
-        after = q[vertices[r]]
-        q_j = before + after
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
         beyond -= 0.5 * G_j
         q_beyond -= 0.5 * (q_j * G_j)
         S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
@@ -75,7 +92,7 @@ def all_cells(
     q: Array,
     edges: Index,
     cells: Index,
-    vertices: Index,
+    vertices: Index | None,
     ratio: Array,
     P: Array,
     inverse_area: Array,

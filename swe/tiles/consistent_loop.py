@@ -13,6 +13,7 @@ and the part of the flux through a side, times its length, is h (l/d) [U/2 + D.(
 """
 
 from mesh.arrays import Array, Index
+from swe.tiles.cell_loop import first_value, twice_mean
 from swe.tiles.layout import LANES, RING, inlined
 
 
@@ -95,7 +96,7 @@ def _one_cell(
     h: Array,
     q: Array,
     opposite: Index,
-    vertices: Index,
+    vertices: Index | None,
     P: Array,
     inverse_area: Array,
     potential: Array,
@@ -106,14 +107,13 @@ def _one_cell(
 ) -> None:
     """dh_i/dt and S_j as in `swe.tiles.cell_loop`, with twice the outflow G_j from the parts of both cells."""
     outflow = outflow_P = qG = qG_P = 0.0
-    last = q[vertices[start + (sides - 1) * stride]]
+    last = first_value(q, vertices, start + (sides - 1) * stride)
     before = last
     for j in range(sides):
         r = start + j * stride
         G_j = part[part_start + j * stride] - part[opposite[r]]
-        after = q[vertices[r]]
-        qG_j = (before + after) * G_j
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
+        qG_j = q_j * G_j
         outflow += G_j
         outflow_P += P[r] * G_j
         qG += qG_j
@@ -126,9 +126,7 @@ def _one_cell(
     for j in range(sides):
         r = start + j * stride
         G_j = part[part_start + j * stride] - part[opposite[r]]
-        after = q[vertices[r]]
-        q_j = before + after
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
         beyond -= 0.5 * G_j
         q_beyond -= 0.5 * (q_j * G_j)
         S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
@@ -142,7 +140,7 @@ def all_cells(
     h: Array,
     q: Array,
     opposite: Index,
-    vertices: Index,
+    vertices: Index | None,
     P: Array,
     inverse_area: Array,
     potential: Array,
