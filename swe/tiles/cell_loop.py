@@ -5,6 +5,14 @@ from swe.tiles.layout import LANES, RING, inlined
 
 
 @inlined
+def at_side(U: Array, edges: Index | None, side: int) -> float:
+    """U at the edge of a side; without `edges`, U holds it at the places of the sides."""
+    if edges is None:
+        return float(U[side])
+    return float(U[edges[side]])
+
+
+@inlined
 def first_value(q: Array, vertices: Index | None, last_side: int) -> float:
     """Q at the vertex before the first side of a cell, which is that after the last one, if sides have vertices."""
     if vertices is None:
@@ -34,7 +42,7 @@ def _one_cell(
     h: Array,
     U: Array,
     q: Array,
-    edges: Index,
+    edges: Index | None,
     cells: Index,
     vertices: Index | None,
     ratio: Array,
@@ -58,7 +66,7 @@ def _one_cell(
     before = last
     for j in range(sides):
         r = start + j * stride
-        U_j = U[edges[r]]
+        U_j = at_side(U, edges, r)
         normal = ratio[r] * U_j
         energy += normal * U_j
         G_j = (h[i] + h[cells[r]]) * normal
@@ -75,7 +83,7 @@ def _one_cell(
     before = last
     for j in range(sides):
         r = start + j * stride
-        G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
+        G_j = (h[i] + h[cells[r]]) * (ratio[r] * at_side(U, edges, r))
         q_j, before = twice_mean(q, vertices, r, before)
         beyond -= 0.5 * G_j
         q_beyond -= 0.5 * (q_j * G_j)
@@ -90,7 +98,7 @@ def all_cells(
     h: Array,
     U: Array,
     q: Array,
-    edges: Index,
+    edges: Index | None,
     cells: Index,
     vertices: Index | None,
     ratio: Array,

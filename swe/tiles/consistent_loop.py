@@ -13,7 +13,7 @@ and the part of the flux through a side, times its length, is h (l/d) [U/2 + D.(
 """
 
 from mesh.arrays import Array, Index
-from swe.tiles.cell_loop import first_value, twice_mean
+from swe.tiles.cell_loop import at_side, first_value, twice_mean
 from swe.tiles.layout import LANES, RING, inlined
 
 
@@ -26,7 +26,7 @@ def _flux_of_cell(
     vector: int,
     h: Array,
     U: Array,
-    edges: Index,
+    edges: Index | None,
     ratio: Array,
     inverse_area: Array,
     vectors: Array,
@@ -38,8 +38,8 @@ def _flux_of_cell(
     for j in range(sides):
         r, w = start + j * stride, vector + j * stride
         D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
-        normal = ratio[r] * U[edges[r]]
-        energy += normal * U[edges[r]]
+        normal = ratio[r] * at_side(U, edges, r)
+        energy += normal * at_side(U, edges, r)
         b_0 += normal * D_0
         b_1 += normal * D_1
         c_0 -= normal * turned * D_1
@@ -58,14 +58,14 @@ def _flux_of_cell(
         D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
         along = D_0 * (y_0 - v_0) + D_1 * (y_1 - v_1)
         across = turned * (D_0 * y_1 - D_1 * y_0)
-        part[r] = h[i] * (ratio[r] * (U[edges[r]] + along + 2.0 * across))
+        part[r] = h[i] * (ratio[r] * (at_side(U, edges, r) + along + 2.0 * across))
 
 
 @inlined
 def fluxes(
     h: Array,
     U: Array,
-    edges: Index,
+    edges: Index | None,
     ratio: Array,
     inverse_area: Array,
     vectors: Array,

@@ -170,7 +170,7 @@ def _changed(model: ShallowWaterModel, tiles: Tiles) -> tuple[tuple[Array, ...] 
     """Scratch, the seconds of anticipation and the factor of upwinding, None where there is no such term.
 
     The scratch is in the order of `swe.tiles.vorticity_loop`: twice the potential vorticity at sides, that of cells,
-    the flows through sides and past them, and differences along them.
+    the flows past sides, differences along them, and the circulations at them.
     """
     terms = model.terms_in_stages
     seconds = next((term.seconds for term in terms if isinstance(term, Anticipation)), None)

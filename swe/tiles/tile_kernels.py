@@ -103,6 +103,7 @@ def _tendency_of_tile(
         q[:] = 0.0
     if changed is None:
         values, corners, own_area = q, vertices, inverse_area
+        circulation, sides = U, edges
     else:
         n, m = b.size, c.size
         other_across = indices[b[n - 5] : b[n - 4]]
@@ -111,6 +112,7 @@ def _tendency_of_tile(
         else:
             cells, opposite = other_across, across
         values, corners, own_area = changed[0][thread], None, inverse_area[: potential.size]
+        circulation, sides = changed[4][thread], None
         vorticity_loop.change_vorticity(
             seconds,
             factor,
@@ -129,16 +131,17 @@ def _tendency_of_tile(
             indices[b[n - 4] : b[n - 3]],
             indices[b[n - 3] : b[n - 2]],
             indices[b[n - 2] : b[n - 1]],
-            (changed[1][thread], changed[2][thread], changed[3][thread], changed[4][thread]),
+            (changed[1][thread], changed[2][thread], changed[3][thread]),
+            circulation,
             values,
         )
     if parts is None:
         cell_loop.all_cells(
             gravity,
             local,
-            U,
+            circulation,
             values,
-            edges,
+            sides,
             across,
             corners,
             ratio,
@@ -155,8 +158,8 @@ def _tendency_of_tile(
         K, part = parts[0][thread], parts[1][thread]
         consistent_loop.fluxes(
             local,
-            U,
-            edges,
+            circulation,
+            sides,
             ratio,
             inverse_area,
             metrics[c[7] : c[8]],

@@ -31,20 +31,20 @@ def _parts_of_cell(
     ratio: Array,
     P: Array,
     q_cell: Array,
-    through: Array,
+    U_at_sides: Array,
     past: Array,
     along: Array,
     at_sides: Array,
 ) -> None:
-    """Q of cell i; at its sides the outflow, its part of the flow past them, the difference of q along, and 2 q_e."""
+    """Q of cell i; at its sides U, its part of the flow past them, the difference of q along, and 2 q_e."""
     outflow = outflow_P = 0.0
     before = q[vertices[start + (sides - 1) * stride]]
     mean = before
     for j in range(sides):
         r = start + j * stride
+        U_at_sides[r] = U[edges[r]]
         flow = ratio[r] * U[edges[r]]
         after = q[vertices[r]]
-        through[r] = flow
         along[r] = after - before
         at_sides[r] = before + after
         outflow += flow
@@ -87,9 +87,10 @@ def _change_at_sides(
     factor: float | None,
     cells: Index,
     opposite: Index,
+    ratio: Array,
     inverse_measure: Array,
     q_cell: Array,
-    through: Array,
+    U_at_sides: Array,
     past: Array,
     along: Array,
     at_sides: Array,
@@ -97,7 +98,7 @@ def _change_at_sides(
     """Change 2 q_e at the sides of cell i, in place."""
     for j in range(sides):
         r = start + j * stride
-        a, b = through[r], past[r] - past[opposite[r]]
+        a, b = ratio[r] * U_at_sides[r], past[r] - past[opposite[r]]
         fall = a * (q_cell[cells[r]] - q_cell[i]) + b * along[r]
         at_sides[r] -= fall * (_anticipated(seconds, inverse_measure[r]) + _upwind(factor, a, b))
 
@@ -122,22 +123,23 @@ def change_vorticity(
     larger_start: Index,
     larger_sides: Index,
     scratch: Arrays,
+    U_at_sides: Array,
     at_sides: Array,
 ) -> None:
-    """Write 2 q_e at the sides of the `computed` cells, the first of those `around`, both in whole blocks.
+    """Write U and 2 q_e at the sides of the `computed` cells, the first of those `around`, both in whole blocks.
 
     `computed_larger` of them, the first of the `larger` ones, have more than `RING` sides.
     """
-    q_cell, through, past, along = scratch
+    q_cell, past, along = scratch
     for block in range(around // LANES):
         for lane in range(LANES):
             i, start = LANES * block + lane, RING * LANES * block + lane
             _parts_of_cell(
-                i, start, LANES, RING, U, q, edges, vertices, ratio, P, q_cell, through, past, along, at_sides
+                i, start, LANES, RING, U, q, edges, vertices, ratio, P, q_cell, U_at_sides, past, along, at_sides
             )
     for k in range(larger.size):
         i, start, sides = larger[k], larger_start[k], larger_sides[k]
-        _parts_of_cell(i, start, 1, sides, U, q, edges, vertices, ratio, P, q_cell, through, past, along, at_sides)
+        _parts_of_cell(i, start, 1, sides, U, q, edges, vertices, ratio, P, q_cell, U_at_sides, past, along, at_sides)
     for block in range(computed // LANES):
         for lane in range(LANES):
             i, start = LANES * block + lane, RING * LANES * block + lane
@@ -150,9 +152,10 @@ def change_vorticity(
                 factor,
                 cells,
                 opposite,
+                ratio,
                 inverse_measure,
                 q_cell,
-                through,
+                U_at_sides,
                 past,
                 along,
                 at_sides,
@@ -168,9 +171,10 @@ def change_vorticity(
             factor,
             cells,
             opposite,
+            ratio,
             inverse_measure,
             q_cell,
-            through,
+            U_at_sides,
             past,
             along,
             at_sides,
