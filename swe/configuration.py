@@ -36,6 +36,7 @@ class Configuration:
     anticipation: float
     dissipation: float
     scheme: SchemeName
+    upwinding: float
 
 
 @dataclass(frozen=True)
@@ -54,6 +55,7 @@ class Options:
     anticipation: float = 0.0
     dissipation: float = 0.0
     scheme: SchemeName = "ringler2010"
+    upwinding: float = 0.0
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -66,7 +68,10 @@ class Options:
                 object.__setattr__(self, name, str(value))
                 continue
             number = plain_number(f"the {words}", value, InputError)
-            if name in ("anticipation", "dissipation"):
+            if name == "upwinding":
+                if not 0.0 <= number <= 1.0:
+                    raise InputError(f"the {words} is {number:g}; it must be a number from 0 to 1")
+            elif name in ("anticipation", "dissipation"):
                 if not 0.0 <= number < np.inf:
                     raise InputError(f"the {words} is {number:g}; it must be a finite number, and not negative")
             elif not 0.0 < number < np.inf:
@@ -81,6 +86,9 @@ class Options:
                 f"the wind of {case_name} is prescribed; {self.integrator if relaxed else 'rrk4'}, anticipation and "
                 "dissipation go with winds that evolve"
             )
+
+        if prescribed_wind and self.upwinding > 0.0:
+            raise InputError(f"the wind of {case_name} is prescribed; upwinding goes with winds that evolve")
 
     def require_suitable_mesh(self, mesh: VoronoiMesh) -> None:
         """Raise `InputError` if a term would divide by the length of edges of zero length."""
@@ -103,6 +111,7 @@ class Options:
             self.anticipation,
             self.dissipation,
             self.scheme,
+            self.upwinding,
         )
 
 

@@ -12,7 +12,7 @@ ROOT = Path(__file__).parent.parent
 LAYERS = ["mesh", "swe", "cases", "postprocess", "trisk"]
 ROOMS = {
     "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"],
-    "swe": ["", "parallel", "equations", "tiles", "diagnostics", "stepping", "output", "run"],
+    "swe": ["", "parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
     "postprocess": ["", "runs", "reference", "compare", "figures", "studies"],
     "trisk": ["report", "arguments", "cli", ""],

@@ -10,7 +10,7 @@ from matplotlib.patches import FancyBboxPatch
 
 ROOMS = {
     "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"),
-    "swe": ("parallel", "equations", "tiles", "diagnostics", "stepping", "output", "run"),
+    "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),
     "trisk": ("report", "arguments", "cli"),

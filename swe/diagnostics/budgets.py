@@ -23,7 +23,7 @@ from swe.state import State
 RATES = {
     "mass": ("m3 s-1", ("transport",)),
     "total_energy": ("m5 s-3", ("coriolis", "exchange", "dissipation")),
-    "potential_enstrophy": ("m s-3", ("coriolis", "anticipation", "dissipation")),
+    "potential_enstrophy": ("m s-3", ("coriolis", "anticipation", "upwinding", "dissipation")),
     "absolute_vorticity": ("m2 s-2", ("coriolis", "gradient", "dissipation")),
 }
 """For each integral the units of its rates and what changes it, besides the time step and the user's own terms."""
@@ -33,6 +33,7 @@ MEANINGS = {
     "exchange": "by the gradient of the Bernoulli function and the mass flux, zero but for round-off",
     "gradient": "by the gradient of the Bernoulli function, zero but for round-off",
     "anticipation": "by the anticipation of potential vorticity",
+    "upwinding": "by the upwinding of potential vorticity",
     "dissipation": "by biharmonic dissipation",
     "time": "since the row before, on the average, less the terms' mean of both rows: by the time step",
 }

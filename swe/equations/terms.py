@@ -16,7 +16,7 @@ from swe.state import State
 INTEGRALS = ("mass", "total_energy", "potential_enstrophy", "absolute_vorticity")
 """Global integrals whose budgets are kept."""
 
-RESERVED = ("transport", "exchange", "coriolis", "gradient", "anticipation", "dissipation", "time")
+RESERVED = ("transport", "exchange", "coriolis", "gradient", "anticipation", "upwinding", "dissipation", "time")
 """Names that every budget uses."""
 
 FieldFunction = Callable[[VoronoiMesh, State, float], Array]

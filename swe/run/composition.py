@@ -13,6 +13,7 @@ from swe.equations.model import ShallowWaterModel, courant_number
 from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.soundness import warning_of_vertices
 from swe.equations.terms import Term
+from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
 from swe.run.case import CaseFields
@@ -53,6 +54,8 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
     terms: list[Term] = []
     if configuration.anticipation > 0.0:
         terms.append(Anticipation(closed_mesh(start.mesh), configuration.anticipation * configuration.time_step))
+    if configuration.upwinding > 0.0:
+        terms.append(Upwinding(closed_mesh(start.mesh), configuration.upwinding))
     if configuration.dissipation > 0.0:
         terms.append(BiharmonicDissipation(start.mesh, configuration.dissipation))
     terms += start.forcings

@@ -5,6 +5,34 @@ from swe.tiles.layout import LANES, RING, inlined
 
 
 @inlined
+def at_side(U: Array, edges: Index | None, side: int) -> float:
+    """U at the edge of a side; without `edges`, U holds it at the places of the sides."""
+    if edges is None:
+        return float(U[side])
+    return float(U[edges[side]])
+
+
+@inlined
+def first_value(q: Array, vertices: Index | None, last_side: int) -> float:
+    """Q at the vertex before the first side of a cell, which is that after the last one, if sides have vertices."""
+    if vertices is None:
+        return 0.0
+    return float(q[vertices[last_side]])
+
+
+@inlined
+def twice_mean(q: Array, vertices: Index | None, side: int, before: float) -> tuple[float, float]:
+    """Twice q at a side, and q at the vertex after it; `before` is that at the vertex before it.
+
+    Without `vertices`, q holds the first at the places of the sides.
+    """
+    if vertices is None:
+        return q[side], before
+    after = q[vertices[side]]
+    return before + after, after
+
+
+@inlined
 def _one_cell(
     i: int,
     start: int,
@@ -14,9 +42,9 @@ def _one_cell(
     h: Array,
     U: Array,
     q: Array,
-    edges: Index,
+    edges: Index | None,
     cells: Index,
-    vertices: Index,
+    vertices: Index | None,
     ratio: Array,
     P: Array,
     inverse_area: Array,
@@ -34,17 +62,16 @@ def _one_cell(
     The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
     """
     outflow = outflow_P = qG = qG_P = energy = 0.0
-    last = q[vertices[start + (sides - 1) * stride]]
+    last = first_value(q, vertices, start + (sides - 1) * stride)
     before = last
     for j in range(sides):
         r = start + j * stride
-        U_j = U[edges[r]]
+        U_j = at_side(U, edges, r)
         normal = ratio[r] * U_j
         energy += normal * U_j
         G_j = (h[i] + h[cells[r]]) * normal
-        after = q[vertices[r]]
-        qG_j = (before + after) * G_j
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
+        qG_j = q_j * G_j
         outflow += G_j
         outflow_P += P[r] * G_j
         qG += qG_j
@@ -56,10 +83,8 @@ def _one_cell(
     before = last
     for j in range(sides):
         r = start + j * stride
-        G_j = (h[i] + h[cells[r]]) * (ratio[r] * U[edges[r]])
-        after = q[vertices[r]]
-        q_j = before + after
-        before = after
+        G_j = (h[i] + h[cells[r]]) * (ratio[r] * at_side(U, edges, r))
+        q_j, before = twice_mean(q, vertices, r, before)
         beyond -= 0.5 * G_j
         q_beyond -= 0.5 * (q_j * G_j)
         S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
@@ -73,9 +98,9 @@ def all_cells(
     h: Array,
     U: Array,
     q: Array,
-    edges: Index,
+    edges: Index | None,
     cells: Index,
-    vertices: Index,
+    vertices: Index | None,
     ratio: Array,
     P: Array,
     inverse_area: Array,

@@ -13,6 +13,7 @@ and the part of the flux through a side, times its length, is h (l/d) [U/2 + D.(
 """
 
 from mesh.arrays import Array, Index
+from swe.tiles.cell_loop import at_side, first_value, twice_mean
 from swe.tiles.layout import LANES, RING, inlined
 
 
@@ -25,7 +26,7 @@ def _flux_of_cell(
     vector: int,
     h: Array,
     U: Array,
-    edges: Index,
+    edges: Index | None,
     ratio: Array,
     inverse_area: Array,
     vectors: Array,
@@ -37,8 +38,8 @@ def _flux_of_cell(
     for j in range(sides):
         r, w = start + j * stride, vector + j * stride
         D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
-        normal = ratio[r] * U[edges[r]]
-        energy += normal * U[edges[r]]
+        normal = ratio[r] * at_side(U, edges, r)
+        energy += normal * at_side(U, edges, r)
         b_0 += normal * D_0
         b_1 += normal * D_1
         c_0 -= normal * turned * D_1
@@ -57,14 +58,14 @@ def _flux_of_cell(
         D_0, D_1, turned = vectors[w], vectors[w + sides * stride], vectors[w + 2 * sides * stride]
         along = D_0 * (y_0 - v_0) + D_1 * (y_1 - v_1)
         across = turned * (D_0 * y_1 - D_1 * y_0)
-        part[r] = h[i] * (ratio[r] * (U[edges[r]] + along + 2.0 * across))
+        part[r] = h[i] * (ratio[r] * (at_side(U, edges, r) + along + 2.0 * across))
 
 
 @inlined
 def fluxes(
     h: Array,
     U: Array,
-    edges: Index,
+    edges: Index | None,
     ratio: Array,
     inverse_area: Array,
     vectors: Array,
@@ -95,7 +96,7 @@ def _one_cell(
     h: Array,
     q: Array,
     opposite: Index,
-    vertices: Index,
+    vertices: Index | None,
     P: Array,
     inverse_area: Array,
     potential: Array,
@@ -106,14 +107,13 @@ def _one_cell(
 ) -> None:
     """dh_i/dt, and S_j as in `swe.tiles.contributions`, with twice the outflow G_j from the parts of both cells."""
     passed = q_passed = half_P = q_half_P = 0.0
-    before = q[vertices[start + (sides - 1) * stride]]
+    last = first_value(q, vertices, start + (sides - 1) * stride)
+    before = last
     for j in range(sides):
         r = start + j * stride
         half = 0.5 * (part[part_start + j * stride] - part[opposite[r]])
-        after = q[vertices[r]]
-        q_j = before + after
+        q_j, before = twice_mean(q, vertices, r, before)
         q_half = q_j * half
-        before = after
         passed += half
         q_passed += q_half
         S[r] = q_j * passed + q_passed
@@ -124,12 +124,10 @@ def _one_cell(
     dh[i] = -0.5 * passed * inverse_area[i]
     rest = 0.5 * passed - 2.0 * half_P
     B = potential[i] + gravity * h[i] + K[i] + 0.125 * (0.5 * q_passed - 2.0 * q_half_P)
-    before = q[vertices[start + (sides - 1) * stride]]
+    before = last
     for j in range(sides):
         r = start + j * stride
-        after = q[vertices[r]]
-        q_j = before + after
-        before = after
+        q_j, before = twice_mean(q, vertices, r, before)
         S[r] = B + 0.125 * (q_j * (rest + P[r] * passed) + (P[r] * q_passed - S[r]))
 
 
@@ -139,7 +137,7 @@ def all_cells(
     h: Array,
     q: Array,
     opposite: Index,
-    vertices: Index,
+    vertices: Index | None,
     P: Array,
     inverse_area: Array,
     potential: Array,

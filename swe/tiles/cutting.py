@@ -15,7 +15,6 @@ length, the last block with cells of none; cells with more have their rings stor
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,17 +22,15 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, Signs
 from mesh.discrete.sides import Sides
 from mesh.discrete.walls import closed_mesh
-from mesh.triangulation.ordering import hilbert_order, inverse_order
+from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.tiles.layout import LANES, MIRROR, RING, TileArrays
+from swe.tiles.numbering import LocalNumbers, order_of_cells, packed
 from swe.tiles.rings import in_whole_blocks, places_in_blocks, ring_array, ring_size, slots_of_sides, whole_blocks
 
 CELLS_PER_TILE = 2560
 """Half a megabyte of scratch stays in the second-level cache, and a tile repeats a tenth of its neighbours' work."""
-
-DISORDER = 1.5
-"""A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +101,7 @@ def build_tiles(
     *,
     sides: Sides | None = None,
     with_border: bool = False,
+    changed_vorticity: bool = False,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
@@ -112,19 +110,21 @@ def build_tiles(
     Where neighbours are missing, a tile reads an edge of no length, kites of no area and a wall's own cell twice.
     `topography` (n_cells,), m; `coriolis` parameter (n_vertices,), 1/s; `gravity`, m/s2. With `sides`, the tiles are
     those of a scheme whose flux through a side has a part from each of its cells: they hold the rings of all cells
-    around those computed, and the vectors of their sides. Raises `InputError` if not even the surroundings of a single
-    cell fit.
+    around those computed, and the vectors of their sides. With `changed_vorticity` they hold what
+    `swe.tiles.vorticity_loop` reads: the rings of these cells in all arrays, all their vertices, and what lies across
+    their sides in both forms. Raises `InputError` if not even the surroundings of a single cell fit.
     """
     n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
     first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
     signs = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
     whole, mesh = mesh, closed_mesh(mesh)
-    cell_order = _cell_order(mesh, first_cell)
+    cell_order = order_of_cells(mesh, first_cell)
     cell_rank = inverse_order(cell_order)
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
-    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, cell_rank, inverse_order(edge_order))
+    edge_rank = inverse_order(edge_order)
+    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, changed_vorticity, cell_rank, edge_rank)
     pieces = [
         cutter.cut(
             cell_order[first_cell[tile] : first_cell[tile + 1]],
@@ -140,10 +140,19 @@ def build_tiles(
                 f"a cell of the mesh has {most.edges} edges around it and its neighbours; the limit is {MIRROR}"
             )
         smaller = cells_per_tile // 2
-        return build_tiles(whole, topography, coriolis, gravity, smaller, sides=sides, with_border=with_border)
-    halo, halo_parts = _packed([piece.halo for piece in pieces], np.uint32)
-    indices, index_parts = _packed([piece.indices for piece in pieces], np.uint16)
-    metrics, metric_parts = _packed([piece.metrics for piece in pieces], np.float64)
+        return build_tiles(
+            whole,
+            topography,
+            coriolis,
+            gravity,
+            smaller,
+            sides=sides,
+            with_border=with_border,
+            changed_vorticity=changed_vorticity,
+        )
+    halo, halo_parts = packed([piece.halo for piece in pieces], np.uint32)
+    indices, index_parts = packed([piece.indices for piece in pieces], np.uint16)
+    metrics, metric_parts = packed([piece.metrics for piece in pieces], np.float64)
     return Tiles(
         cell_order=None if _is_identity(cell_order) else cell_order,
         edge_order=None if _is_identity(edge_order) else edge_order,
@@ -180,6 +189,7 @@ class _Cutter:
         coriolis: Array,
         gravity: float,
         sides: Sides | None,
+        changed_vorticity: bool,
         cell_rank: Index,
         edge_rank: Index,
     ) -> None:
@@ -189,11 +199,11 @@ class _Cutter:
         self.planetary = coriolis * mesh.area_triangle
         self.ratio = mesh.dv_edge / mesh.dc_edge
         self.on_cell, self.on_vertex = signs
-        self.sides = sides
+        self.sides, self.changed_vorticity = sides, changed_vorticity
         self.prefix = _area_passed(mesh)
-        self.local_cells = _LocalNumbers(mesh.n_cells)
-        self.local_edges = _LocalNumbers(mesh.n_edges)
-        self.local_vertices = _LocalNumbers(mesh.n_vertices)
+        self.local_cells = LocalNumbers(mesh.n_cells)
+        self.local_edges = LocalNumbers(mesh.n_edges)
+        self.local_vertices = LocalNumbers(mesh.n_vertices)
 
     def cut(self, own_cells: Index, own_edges: Index, with_border: bool) -> _Piece:
         """The tile that owns these cells and edges, given by their numbers in the mesh."""
@@ -211,13 +221,22 @@ class _Cutter:
         round_vertices = vertices.known()
         edges.add(mesh.edges_on_vertex[round_vertices])
         cells.add(mesh.cells_on_vertex[round_vertices])
-        ringed = computed if self.sides is None else cells.known()
+        ringed = computed if self.sides is None and not self.changed_vorticity else cells.known()
         around = mesh.n_edges_on_cell[ringed]
         edges.add(mesh.edges_on_cell[ringed][np.arange(mesh.max_edges) < around[:, None]])
-        slots = slots_of_sides(sides, mesh.max_edges)
         larger = np.flatnonzero(sides > RING)
-        corners = vertices.of(mesh.vertices_on_cell[computed])
-        last_corner = corners[np.arange(len(computed)), sides - 1]
+        laid = computed  # the cells whose sides have places in the arrays of this order
+        if self.changed_vorticity:
+            laid, sides = ringed, around
+            vertices.add(mesh.vertices_on_cell[ringed][np.arange(mesh.max_edges) < around[:, None]])
+            round_vertices = vertices.known()
+            edges.add(mesh.edges_on_vertex[round_vertices])
+            cells.add(mesh.cells_on_vertex[round_vertices])
+        slots = slots_of_sides(sides, mesh.max_edges)
+        corners = vertices.of(mesh.vertices_on_cell[laid])
+        last_corner = corners[np.arange(len(laid)), sides - 1]
+        cells_across = ring_array(cells.of(mesh.cells_on_cell[laid]), sides, 0)
+        opposite = self._opposite(computed, sides, around)
         halo_edges, lengths = edges.known()[len(own_edges) :], mesh.dc_edge[edges.known()]
         round_edges = edges.of(mesh.edges_on_vertex[round_vertices])
         missing = self.on_vertex[round_vertices] == 0
@@ -235,23 +254,25 @@ class _Cutter:
                 _signed(round_edges, self.on_vertex[round_vertices] > 0).T,
                 cells.of(mesh.cells_on_vertex[round_vertices]).T,
                 ring_array(_signed(edges.of(mesh.edges_on_cell[ringed]), self.on_cell[ringed] > 0), around, 0),
-                self._across(computed, sides, around),
+                cells_across if self.sides is None else opposite,
                 ring_array(corners, sides, last_corner),
                 larger,
                 slots[larger, 0],
                 sides[larger],
                 np.stack([self._slot(moved[len(own_edges) :], end, slots) for end in (0, 1)]),
                 *self._larger_in_flux(larger, around),
+                *self._for_changed_vorticity(opposite if self.sides is None else cells_across, around),
             ],
             metrics=[
                 lengths,
                 mesh.kite_areas_on_vertex[round_vertices].T,
                 self.planetary[round_vertices],
                 ring_array(ratio, around, 0.0),
-                ring_array(self.prefix[computed], sides, 0.0),
+                ring_array(self.prefix[laid], sides, 0.0),
                 in_whole_blocks(1.0 / mesh.area_cell[ringed]),
                 in_whole_blocks(self.potential[computed]),
                 *self._vectors(ringed, around, ratio),
+                *self._inverse_measure(ringed, around),
             ],
             sizes=(
                 len(cells.known()),
@@ -267,17 +288,20 @@ class _Cutter:
             numbers.forget()
         return piece
 
-    def _across(self, computed: Index, sides: Index, around: Index) -> Index:
-        """What lies across every side: the cell or, in the layout of the flux, the same side seen from there."""
-        mesh, across = self.mesh, self.local_cells.of(self.mesh.cells_on_cell[computed])
-        if self.sides is None:
-            return ring_array(across, sides, 0)
-        slots = slots_of_sides(around, mesh.max_edges)
-        edges = mesh.edges_on_cell[computed]
+    def _opposite(self, computed: Index, sides: Index, around: Index) -> Index:
+        """The places of the same sides seen from the cells across, for the computed cells; others stand for themselves.
+
+        `sides` are those of the cells in the ring, `around` those of the cells to whose places it points.
+        """
+        if self.sides is None and not self.changed_vorticity:
+            return sides[:0]
+        mesh, slots = self.mesh, slots_of_sides(around, self.mesh.max_edges)
+        there, edges = self.on_cell[computed] != 0, mesh.edges_on_cell[computed]
         side = np.argmax(mesh.edges_on_cell[mesh.cells_on_cell[computed]] == edges[:, :, None], axis=2)
-        own = slots[: len(computed)]  # a side through which nothing flows is its own opposite
-        no_side = places_in_blocks(len(computed))[:, RING - 1]
-        return ring_array(np.where(self.on_cell[computed] == 0, own, slots[across, side]), sides, no_side)
+        across = np.where(there, self.local_cells.of(mesh.cells_on_cell[computed]), 0)
+        opposite = slots[: len(sides)].copy()  # a side through which nothing flows is its own opposite
+        opposite[: len(computed)][there] = slots[across, side][there]
+        return ring_array(opposite, sides, places_in_blocks(len(sides))[:, RING - 1])
 
     def _larger_in_flux(self, larger: Index, around: Index) -> list[Index]:
         """Where the flux of the `larger` cells starts; and for all cells around, which are larger, and their sides."""
@@ -285,6 +309,20 @@ class _Cutter:
             return []
         slots, all_larger = slots_of_sides(around, self.mesh.max_edges), np.flatnonzero(around > RING)
         return [slots[larger, 0], all_larger, slots[all_larger, 0], around[all_larger]]
+
+    def _for_changed_vorticity(self, across: Index, around: Index) -> list[Index]:
+        """What lies `across` in the form that the scheme does not need; which of the cells are larger, and how."""
+        if not self.changed_vorticity:
+            return []
+        larger = np.flatnonzero(around > RING)
+        return [across, larger, slots_of_sides(around, self.mesh.max_edges)[larger, 0], around[larger]]
+
+    def _inverse_measure(self, ringed: Index, around: Index) -> list[Array]:
+        """1/(l d) at every side, zero at edges of no length."""
+        if not self.changed_vorticity:
+            return []
+        measure = (self.mesh.dv_edge * self.mesh.dc_edge)[self.mesh.edges_on_cell[ringed]]
+        return [ring_array(np.divide(1.0, measure, out=np.zeros_like(measure), where=measure > 0.0), around, 0.0)]
 
     def _vectors(self, ringed: Index, around: Index, ratio: Array) -> list[Array]:
         """The vector to each neighbour, and where its bisector meets the middle of the side, as parts of its length."""
@@ -306,49 +344,6 @@ class _Cutter:
         cell = self.mesh.cells_on_edge[edges, end]
         side = np.argmax(self.mesh.edges_on_cell[cell] == edges[:, None], axis=1)
         return slots[self.local_cells.of(cell), side]
-
-
-class _LocalNumbers:
-    """Local numbers, within a tile, of entities of one kind, in the order in which they first appear."""
-
-    def __init__(self, size: int) -> None:
-        self._number = np.full(size, -1)
-        self._entities: list[Index] = []
-        self._count = 0
-
-    def add(self, entities: Index) -> None:
-        """Number those that have no number yet."""
-        fresh = entities.ravel()[self._number[entities.ravel()] < 0]
-        fresh = fresh[np.sort(np.unique(fresh, return_index=True)[1])]
-        self._number[fresh] = self._count + np.arange(len(fresh))
-        self._entities.append(fresh)
-        self._count += len(fresh)
-
-    def known(self) -> Index:
-        """The entities in the order of their local numbers."""
-        return np.concatenate(self._entities)
-
-    def of(self, entities: Index) -> Index:
-        """Local numbers of `entities`; undefined for those that have none."""
-        return self._number[entities]
-
-    def forget(self) -> None:
-        """Forget all numbers, to start on another tile."""
-        for entities in self._entities:
-            self._number[entities] = -1
-        self._entities, self._count = [], 0
-
-
-def _cell_order(mesh: VoronoiMesh, first_cell: Index) -> Index:
-    """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
-    own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
-    tile = np.searchsorted(first_cell, own, side="right")
-
-    def parted(order: Index) -> int:
-        ends = tile[inverse_order(order)][mesh.cells_on_edge]
-        return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
-
-    return own if parted(own) <= DISORDER * parted(curve) else curve
 
 
 def _edges_of(mesh: VoronoiMesh, cells: Index) -> Index:
@@ -375,11 +370,3 @@ def _area_passed(mesh: VoronoiMesh) -> Array:
 def _signed(numbers: Index, positive: NDArray[np.bool_]) -> Index:
     """Places of U, or of -U where not `positive`."""
     return np.where(positive, numbers, numbers + MIRROR)
-
-
-def _packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:
-    """All parts of all tiles in one array, and the places where they begin, (n_tiles, parts + 1)."""
-    sizes = np.array([[part.size for part in piece] for piece in pieces])
-    ends = np.cumsum(sizes).reshape(sizes.shape)
-    starts = np.concatenate([ends[:, :1] - sizes[:, :1], ends], axis=1)
-    return np.concatenate([part.ravel() for piece in pieces for part in piece]).astype(dtype), starts

@@ -5,9 +5,11 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.triangulation.ordering import inverse_order
+from swe.equations.anticipation import Anticipation
 from swe.equations.consistent import Consistent
 from swe.equations.model import ShallowWaterModel
 from swe.equations.schemes import Ringler2010
+from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
 from swe.state import State
@@ -18,7 +20,8 @@ from swe.tiles.layout import LANES, MIRROR
 
 def why_not_fused(model: ShallowWaterModel, integrator: Integrator = "rk4") -> str | None:
     """What the loops over tiles do not compute of a model, as part of a sentence; None if they compute all of it."""
-    names = [term.name for term in model.terms_in_stages]
+    known = () if STEPPINGS[integrator].forward_backward else (Anticipation, Upwinding)
+    names = [term.name for term in model.terms_in_stages if type(term) not in known]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
     if isinstance(model.scheme, Consistent) and STEPPINGS[integrator].forward_backward:
@@ -40,11 +43,18 @@ class FusedMethod:
             raise InputError(f"{reason}, which the fused method lacks; take {plain_twin}")
         sides = model.scheme.sides if isinstance(model.scheme, Consistent) else None
         self.tiles = build_tiles(
-            model.mesh, model.topography, model.coriolis, model.gravity, sides=sides, with_border=with_border
+            model.mesh,
+            model.topography,
+            model.coriolis,
+            model.gravity,
+            sides=sides,
+            with_border=with_border,
+            changed_vorticity=bool(model.terms_in_stages),
         )
         self.model = model
         self._scratch = _scratch(self.tiles)
         self._parts = None if sides is None else _parts_of_flux(self.tiles)
+        self._changed = _changed(model, self.tiles)
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(stages)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
@@ -101,7 +111,9 @@ class FusedMethod:
         for values in slope:
             values.fill(0.0)
         moving, at = not model.prescribed_wind, self._in_order(state)
-        tile_kernels.tendency(tiles.arrays, self._scratch, self._parts, model.gravity, moving, at, slope, self._unsound)
+        tile_kernels.tendency(
+            *(tiles.arrays, self._scratch, self._parts, *self._changed, model.gravity, moving, at, slope, self._unsound)
+        )
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:
@@ -139,7 +151,16 @@ class FusedRungeKutta(FusedMethod):
     def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
         tiles, model = self.tiles, self.model
         taken: int = tile_kernels.rk4_steps(
-            *(tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y, *self._stages),
+            *(
+                tiles.arrays,
+                self._scratch,
+                self._parts,
+                *self._changed,
+                model.gravity,
+                not model.prescribed_wind,
+                y,
+                *self._stages,
+            ),
             *(time_step, steps, self._unsound),
         )
         return taken
@@ -147,7 +168,15 @@ class FusedRungeKutta(FusedMethod):
     def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
         """The stages of `rk4_steps`, with an exchange of values between processes after each."""
         model, (second, third, fourth) = self.model, self._stages
-        fixed = (self.tiles.arrays, self._scratch, self._parts, model.gravity, not model.prescribed_wind, y)
+        fixed = (
+            self.tiles.arrays,
+            self._scratch,
+            self._parts,
+            *self._changed,
+            model.gravity,
+            not model.prescribed_wind,
+            y,
+        )
         for taken in range(1, steps + 1):
             for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
                 tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
@@ -183,3 +212,19 @@ def _parts_of_flux(tiles: Tiles) -> tuple[Array, ...]:
     """The same for schemes whose flux has parts: kinetic energy, and the parts of the flux."""
     most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
     return tuple(np.zeros((threads, size)) for size in (most.cells + LANES, most.flux_sides))
+
+
+def _changed(model: ShallowWaterModel, tiles: Tiles) -> tuple[tuple[Array, ...] | None, float | None, float | None]:
+    """Scratch, the seconds of anticipation and the factor of upwinding, None where there is no such term.
+
+    The scratch is in the order of `swe.tiles.vorticity_loop`: twice the potential vorticity at sides, that of cells,
+    the flows past sides, differences along them, and the circulations at them.
+    """
+    terms = model.terms_in_stages
+    seconds = next((term.seconds for term in terms if isinstance(term, Anticipation)), None)
+    factor = next((term.factor for term in terms if isinstance(term, Upwinding)), None)
+    if seconds is None and factor is None:
+        return None, None, None
+    most, threads = tiles.most, numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
+    sizes = (most.sides, most.cells + LANES, most.sides, most.sides, most.sides)
+    return tuple(np.zeros((threads, size)) for size in sizes), seconds, factor

@@ -1,8 +1,11 @@
 """How the loops over tiles are compiled, and sizes that their layout and the loops must agree upon."""
 
+from contextlib import suppress
 from typing import Any
 
 import numba
+from numba import types
+from numba.extending import intrinsic
 
 from mesh.arrays import Array, Index
 
@@ -24,3 +27,27 @@ options: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 part_options: dict[str, Any] = {**options, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 inlined = numba.njit(**part_options)
 compiled = numba.njit(parallel=True, cache=True, **options)
+
+
+@intrinsic
+def _prefer_widest_vectors(_typing_context: Any) -> Any:
+    """Let the loop that calls this use vectors of 512 bits if the processor has them.
+
+    Even then the compiler prefers 256 bits, to spare the clock of older processors, and the loop is a seventh slower.
+    llvmlite does not know the attribute by name, so it is added to the underlying set. If that ceases to work, the loop
+    is as fast as without it.
+    """
+
+    def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
+        with suppress(AttributeError, TypeError):
+            set.add(builder.function.attributes, '"prefer-vector-width"="512"')
+        return context.get_dummy_value()
+
+    return types.void(), add_attribute
+
+
+def _nothing() -> None:
+    """The substitute when the loops run as Python."""
+
+
+use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_vectors  # type: ignore[attr-defined]

@@ -14,17 +14,12 @@ Indices are unsigned, because signed ones are tested for wrap-around. Slices are
 loop calls, because the compiler learns that arrays do not overlap only if the loop itself makes no views.
 """
 
-from contextlib import suppress
-from typing import Any
-
 import numba
 import numpy as np
-from numba import types
-from numba.extending import intrinsic
 
 from mesh.arrays import Array, Index
-from swe.tiles import cell_loop, consistent_loop
-from swe.tiles.layout import MIRROR, Arrays, TileArrays, compiled, inlined, options
+from swe.tiles import cell_loop, consistent_loop, vorticity_loop
+from swe.tiles.layout import MIRROR, Arrays, TileArrays, compiled, inlined, options, use_widest_vectors
 
 
 @inlined
@@ -76,6 +71,9 @@ def _tendency_of_tile(
     tiles: TileArrays,
     scratch: Arrays,
     parts: Arrays | None,
+    changed: Arrays | None,
+    seconds: float | None,
+    factor: float | None,
     gravity: float,
     moving: bool,
     h: Array,
@@ -103,18 +101,52 @@ def _tendency_of_tile(
         _potential_vorticity(U, local, edges_on_vertex, cells_on_vertex, kites, planetary, q)
     else:
         q[:] = 0.0
+    if changed is None:
+        values, corners, own_area = q, vertices, inverse_area
+        circulation, sides = U, edges
+    else:
+        n, m = b.size, c.size
+        other_across = indices[b[n - 5] : b[n - 4]]
+        if parts is None:
+            cells, opposite = across, other_across
+        else:
+            cells, opposite = other_across, across
+        values, corners, own_area = changed[0][thread], None, inverse_area[: potential.size]
+        circulation, sides = changed[4][thread], None
+        vorticity_loop.change_vorticity(
+            seconds,
+            factor,
+            inverse_area.size,
+            potential.size,
+            larger.size,
+            U,
+            q,
+            edges,
+            cells,
+            opposite,
+            vertices,
+            ratio,
+            P,
+            metrics[c[m - 2] : c[m - 1]],
+            indices[b[n - 4] : b[n - 3]],
+            indices[b[n - 3] : b[n - 2]],
+            indices[b[n - 2] : b[n - 1]],
+            (changed[1][thread], changed[2][thread], changed[3][thread]),
+            circulation,
+            values,
+        )
     if parts is None:
         cell_loop.all_cells(
             gravity,
             local,
-            U,
-            q,
-            edges,
+            circulation,
+            values,
+            sides,
             across,
-            vertices,
+            corners,
             ratio,
             P,
-            inverse_area,
+            own_area,
             potential,
             larger,
             larger_start,
@@ -126,8 +158,8 @@ def _tendency_of_tile(
         K, part = parts[0][thread], parts[1][thread]
         consistent_loop.fluxes(
             local,
-            U,
-            edges,
+            circulation,
+            sides,
             ratio,
             inverse_area,
             metrics[c[7] : c[8]],
@@ -140,11 +172,11 @@ def _tendency_of_tile(
         consistent_loop.all_cells(
             gravity,
             local,
-            q,
+            values,
             across,
-            vertices,
+            corners,
             P,
-            inverse_area,
+            own_area,
             potential,
             larger,
             larger_start,
@@ -199,6 +231,9 @@ def _stage_of_tile(
     tiles: TileArrays,
     scratch: Arrays,
     parts: Arrays | None,
+    changed: Arrays | None,
+    seconds: float | None,
+    factor: float | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -211,7 +246,7 @@ def _stage_of_tile(
     unsound: Index,
 ) -> None:
     """Tendency and update of one tile; see `stage`."""
-    _tendency_of_tile(tile, thread, tiles, scratch, parts, gravity, moving, at[0], at[1])
+    _tendency_of_tile(tile, thread, tiles, scratch, parts, changed, seconds, factor, gravity, moving, at[0], at[1])
     dh, du = scratch[4][thread], scratch[5][thread]
     cell, next_cell, edge, next_edge = tiles[0][tile], tiles[0][tile + 1], tiles[1][tile], tiles[1][tile + 1]
     if weight == 0.0:
@@ -223,35 +258,14 @@ def _stage_of_tile(
         _add_scaled(edge, next_edge, y[1], weight * time_step, du, result[1])
 
 
-@intrinsic
-def _prefer_widest_vectors(_typing_context: Any) -> Any:
-    """Let the loop that calls this use vectors of 512 bits if the processor has them.
-
-    Even then the compiler prefers 256 bits, to spare the clock of older processors, and the loop is a seventh slower.
-    llvmlite does not know the attribute by name, so it is added to the underlying set. If that ceases to work, the loop
-    is as fast as without it.
-    """
-
-    def add_attribute(context: Any, builder: Any, _signature: Any, _arguments: Any) -> Any:
-        with suppress(AttributeError, TypeError):
-            set.add(builder.function.attributes, '"prefer-vector-width"="512"')
-        return context.get_dummy_value()
-
-    return types.void(), add_attribute
-
-
-def _nothing() -> None:
-    """The substitute when the loops run as Python."""
-
-
-use_widest_vectors = _nothing if numba.config.DISABLE_JIT else _prefer_widest_vectors  # type: ignore[attr-defined]
-
-
 @compiled
 def stage(
     tiles: TileArrays,
     scratch: Arrays,
     parts: Arrays | None,
+    changed: Arrays | None,
+    seconds: float | None,
+    factor: float | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -276,6 +290,9 @@ def stage(
             tiles,
             scratch,
             parts,
+            changed,
+            seconds,
+            factor,
             gravity,
             moving,
             y,
@@ -294,6 +311,9 @@ def tendency(
     tiles: TileArrays,
     scratch: Arrays,
     parts: Arrays | None,
+    changed: Arrays | None,
+    seconds: float | None,
+    factor: float | None,
     gravity: float,
     moving: bool,
     at: Arrays,
@@ -301,7 +321,24 @@ def tendency(
     unsound: Index,
 ) -> None:
     """Write the slope at the state `at` into `slope`, zero beforehand, both in the order of the tiles."""
-    stage(tiles, scratch, parts, gravity, moving, slope, at, slope, slope, slope, 1.0, 1.0, unsound)
+    stage(
+        tiles,
+        scratch,
+        parts,
+        changed,
+        seconds,
+        factor,
+        gravity,
+        moving,
+        slope,
+        at,
+        slope,
+        slope,
+        slope,
+        1.0,
+        1.0,
+        unsound,
+    )
 
 
 @numba.njit(cache=True, **options)
@@ -309,6 +346,9 @@ def rk4_steps(
     tiles: TileArrays,
     scratch: Arrays,
     parts: Arrays | None,
+    changed: Arrays | None,
+    seconds: float | None,
+    factor: float | None,
     gravity: float,
     moving: bool,
     y: Arrays,
@@ -325,12 +365,26 @@ def rk4_steps(
     counted for each tile in `unsound` (n_tiles,). `second`, `third` and `fourth` are left with the states at which the
     stages after the first took their slopes. If not `moving`, the velocity stays fixed.
     """
-    dt = time_step
     for taken in range(1, count + 1):
-        stage(tiles, scratch, parts, gravity, moving, y, y, second, third, second, dt, 0.5, unsound)
-        stage(tiles, scratch, parts, gravity, moving, y, second, second, third, third, dt, 0.5, unsound)
-        stage(tiles, scratch, parts, gravity, moving, y, third, second, third, fourth, dt, 1.0, unsound)
-        stage(tiles, scratch, parts, gravity, moving, y, fourth, second, third, fourth, dt, 0.0, unsound)
+        for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, fourth, 0.0)):
+            stage(
+                tiles,
+                scratch,
+                parts,
+                changed,
+                seconds,
+                factor,
+                gravity,
+                moving,
+                y,
+                at,
+                second,
+                third,
+                result,
+                time_step,
+                weight,
+                unsound,
+            )
         if np.any(unsound > 0):
             return taken
     return count

@@ -49,6 +49,14 @@ def run(
             help="Fraction of a time step by which potential vorticity is anticipated (APVM); 0.5 in the literature.",
         ),
     ] = 0.0,
+    upwinding: Annotated[
+        float,
+        typer.Option(
+            "--upwinding",
+            help="How far potential vorticity is blended towards the value upstream, from 0 to 1; like --apvm, but "
+            "whatever the time step.",
+        ),
+    ] = 0.0,
     dissipation: Annotated[
         float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
     ] = 0.0,
@@ -97,6 +105,7 @@ def run(
         "anticipation": anticipation,
         "dissipation": dissipation,
         "scheme": scheme,
+        "upwinding": upwinding,
     }
     # Refuse what can be refused before a mesh is made in vain.
     Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)

@@ -14,6 +14,7 @@ from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.tendency import Energy, consistent, ringler2010, tendency
+from swe.equations.upwinding import Upwinding
 from swe.integrators import Integrator
 from swe.run.composition import fused_method, plain_method
 from swe.tiles import cutting
@@ -88,7 +89,8 @@ def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
     if part.dv_edge.min() < 1e-3:
         pytest.skip("gradients along edges of no length have no meaning")
     scaled = part.scaled(RADIUS)
-    terms = (Anticipation(closed_mesh(scaled), 100.0), BiharmonicDissipation(scaled, 1e12))
+    damping = BiharmonicDissipation(scaled, 1e12)
+    terms = (Anticipation(closed_mesh(scaled), 100.0), Upwinding(closed_mesh(scaled), 0.5), damping)
     model, state = random_model(part, *terms, seed=8)
     for term in terms:
         found = model.tendency_of(term, state)
@@ -99,14 +101,20 @@ def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
     random = np.random.default_rng(1)
     u, v = random.normal(size=(2, part.n_edges))
     u[wall_edges(part)] = v[wall_edges(part)] = 0.0
-    damping = terms[1]
     on_u, on_v = damping.acceleration(u).copy(), damping.acceleration(v).copy()
     assert (measure * u) @ on_v == pytest.approx((measure * v) @ on_u, rel=1e-9)
     assert (measure * u) @ on_u < 0.0
 
 
 @pytest.mark.parametrize(
-    "options", [{}, {"integrator": "rrk4"}, {"integrator": "rfbrk3"}, {"anticipation": 0.5, "dissipation": 1e15}]
+    "options",
+    [
+        {},
+        {"integrator": "rrk4"},
+        {"integrator": "rfbrk3"},
+        {"anticipation": 0.5, "dissipation": 1e15},
+        {"upwinding": 0.3},
+    ],
 )
 def test_a_run_in_a_basin(larger_mesh: VoronoiMesh, options: dict[str, object]) -> None:
     """Test case 5 where the tropics alone are left: mass and absolute vorticity stay, no wall lets anything pass."""

@@ -49,6 +49,7 @@ SERIES_UNITS = {
     "total_energy_rate_time": ("m5 s-3", "rate of total energy since the row before"),
     "potential_enstrophy_rate_coriolis": ("m s-3", "rate of potential enstrophy by the Coriolis force"),
     "potential_enstrophy_rate_anticipation": ("m s-3", "rate of potential enstrophy by the anticipation"),
+    "potential_enstrophy_rate_upwinding": ("m s-3", "rate of potential enstrophy by the upwinding"),
     "potential_enstrophy_rate_dissipation": ("m s-3", "rate of potential enstrophy by biharmonic dissipation"),
     "potential_enstrophy_rate_time": ("m s-3", "rate of potential enstrophy since the row before"),
     "absolute_vorticity_rate_coriolis": ("m2 s-2", "rate of absolute vorticity by the curl of the Coriolis force"),
@@ -235,6 +236,7 @@ def test_rates_of_the_budgets(written: Written) -> None:
         for name, value in expected.items():
             assert series[name][row] == pytest.approx(value, rel=1e-9, abs=0.0), name
             assert (value != 0.0) == (written.kind == "damped"), name
+        assert series["potential_enstrophy_rate_upwinding"][row] == 0.0
         work = (mesh.dvEdge * mesh.dcEdge) @ np.abs(now.F * pressure)
         for term in ("coriolis", "exchange"):
             assert abs(series[f"total_energy_rate_{term}"][row]) < 1e-13 * work
@@ -249,7 +251,7 @@ def test_rates_of_the_time_step_are_what_the_terms_leave(written: Written) -> No
     terms = {
         "mass": ("transport",),
         "total_energy": ("coriolis", "exchange", "dissipation"),
-        "potential_enstrophy": ("coriolis", "anticipation", "dissipation"),
+        "potential_enstrophy": ("coriolis", "anticipation", "upwinding", "dissipation"),
         "absolute_vorticity": ("coriolis", "gradient", "dissipation"),
     }
     for integral, names in terms.items():

@@ -206,7 +206,13 @@ def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp
         resumed(case=Williamson5(wind_speed=21.0))
     for name, value in (
         *(("time_step", 900.0), ("snapshot_interval", 3600.0), ("diagnostics_interval", 7200.0)),
-        *(("integrator", "rrk4"), ("anticipation", 0.5), ("dissipation", 1e14), ("sampling", "mean")),
+        *(
+            ("integrator", "rrk4"),
+            ("anticipation", 0.5),
+            ("upwinding", 0.25),
+            ("dissipation", 1e14),
+            ("sampling", "mean"),
+        ),
     ):
         with pytest.raises(InputError, match=f"holds a run with {name.replace('_', ' ')} = .*, not .*; give the same"):
             resumed(**{name: value})

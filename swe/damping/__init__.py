@@ -1,0 +1,1 @@
+"""Dissipation in loops over tiles."""
