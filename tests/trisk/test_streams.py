@@ -48,6 +48,7 @@ def test_a_closed_pipe_ends_quietly(mesh_file: Path) -> None:
     assert (done.returncode, done.stderr) == (141, b"")
 
 
+@pytest.mark.slow
 def test_names_that_are_no_text(mesh_file: Path, tmp_path: Path) -> None:
     name = os.fsencode(tmp_path) + b"/run_\xff"
     run = [*COMMAND, "run", "williamson2", "--mesh", mesh_file, "--days", "0.1", "-q", "-o", name]

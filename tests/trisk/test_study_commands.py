@@ -12,6 +12,7 @@ from tests.trisk.conftest import Call
 STUDY = ("--family", "scvt", "--cells", 162, "--cells", 642, "--days", 0.25)
 
 
+@pytest.mark.slow
 def test_study_of_meshes_goes_on_where_it_was(trisk: Call, tmp_path: Path) -> None:
     folder = tmp_path / "study"
     code, out, _ = trisk("study", "mesh", "williamson2", *STUDY, "--set", "angle=pi/4", "-o", folder)

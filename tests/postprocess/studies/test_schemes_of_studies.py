@@ -97,6 +97,7 @@ def test_a_study_of_one_scheme_goes_on_with_the_other(study: Study) -> None:
     assert replace(task, scheme="consistent").finished_run() is None
 
 
+@pytest.mark.slow
 def test_report_names_schemes_where_there_are_two(study: Study) -> None:
     plan, members, rows = study
     both = write_mesh_report(plan, members, rows, ["trisk"]).read_text()
