@@ -1,5 +1,7 @@
 """Anticipation of potential vorticity (Sadourny and Basdevant 1985): potential enstrophy decays, energy stays."""
 
+from typing import Any
+
 from mesh.arrays import Array
 from mesh.discrete.operators import vertex_to_cell
 from mesh.voronoi_mesh import VoronoiMesh
@@ -21,18 +23,24 @@ class Anticipation(Term):
 
     def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
         """See `Term`."""
-        mesh = self._mesh
-        kernels.anticipate(
-            state.normal_velocity,
-            potential_vorticity,
-            vertex_to_cell(mesh, potential_vorticity),
-            self.seconds,
-            mesh.cells_on_edge,
-            mesh.vertices_on_edge,
-            mesh.n_edges_on_edge,
-            mesh.edges_on_edge,
-            mesh.weights_on_edge,
-            mesh.dc_edge,
-            mesh.dv_edge,
-            at_edges,
-        )
+        kernels.anticipate(*by_gradient(self._mesh, state, potential_vorticity, self.seconds, at_edges))
+
+
+def by_gradient(
+    mesh: VoronoiMesh, state: State, potential_vorticity: Array, number: float, at_edges: Array
+) -> tuple[Any, ...]:
+    """What kernels take that change potential vorticity at edges by its gradient, as much as a `number` says."""
+    return (
+        state.normal_velocity,
+        potential_vorticity,
+        vertex_to_cell(mesh, potential_vorticity),
+        number,
+        mesh.cells_on_edge,
+        mesh.vertices_on_edge,
+        mesh.n_edges_on_edge,
+        mesh.edges_on_edge,
+        mesh.weights_on_edge,
+        mesh.dc_edge,
+        mesh.dv_edge,
+        at_edges,
+    )

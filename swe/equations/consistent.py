@@ -140,5 +140,5 @@ def _flux(
             i, j = cells_on_edge[e, k], side_on_edge[e, k]
             along = normal[i, j, 0] * v[i, 0] + normal[i, j, 1] * v[i, 1]
             across = (middle[i, j, 0] * y[i, 0] + middle[i, j, 1] * y[i, 1]) / d[e]
-            flux += h[i] * (0.5 * (sign[i, j] * sign[i, j] * u[e] - sign[i, j] * along) + sign[i, j] * across)
+            flux += h[i] * sign[i, j] * (0.5 * (sign[i, j] * u[e] - along) + across)
         F[e] = flux

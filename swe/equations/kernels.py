@@ -14,6 +14,7 @@ from mesh.arrays import Array, Index, Signs
 STILL = 1e-300
 """Square of a flow past an edge, m4/s2, so weak that it leaves q as it is."""
 
+inlined = numba.njit(error_model="numpy", fastmath={"contract"}, forceinline=True)
 compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
 
 
@@ -113,6 +114,15 @@ def velocity_tendency(
         du[e] = Q - (g * (h[k] + b[k] - h[i] - b[i]) + K[k] - K[i]) / dc_edge[e]
 
 
+@inlined
+def _tangential_velocity(e: int, u: Array, count: int, edges_on_edge: Index, weights_on_edge: Array) -> float:
+    """The velocity along edge e, from those across the `count` edges around its cells."""
+    tangential = 0.0
+    for j in range(count):
+        tangential += weights_on_edge[e, j] * u[edges_on_edge[e, j]]
+    return tangential
+
+
 @compiled
 def anticipate(
     u: Array,
@@ -130,9 +140,7 @@ def anticipate(
 ) -> None:
     """Subtract time (u . grad q)_e from q_e at edges: q is anticipated as what the flow brings within `time` s."""
     for e in numba.prange(u.size):
-        tangential = 0.0
-        for j in range(n_edges_on_edge[e]):
-            tangential += weights_on_edge[e, j] * u[edges_on_edge[e, j]]
+        tangential = _tangential_velocity(e, u, n_edges_on_edge[e], edges_on_edge, weights_on_edge)
         across = (q_cell[cells_on_edge[e, 1]] - q_cell[cells_on_edge[e, 0]]) / dc_edge[e]
         along = (q[vertices_on_edge[e, 1]] - q[vertices_on_edge[e, 0]]) / dv_edge[e]
         q_edge[e] -= time * (u[e] * across + tangential * along)
@@ -155,9 +163,7 @@ def blend_upwind(
 ) -> None:
     """Add `factor` of the difference between the value upstream and q_e to q_e (`swe.equations.upwinding`)."""
     for e in numba.prange(u.size):
-        tangential = 0.0
-        for j in range(n_edges_on_edge[e]):
-            tangential += weights_on_edge[e, j] * u[edges_on_edge[e, j]]
+        tangential = _tangential_velocity(e, u, n_edges_on_edge[e], edges_on_edge, weights_on_edge)
         a, b = dv_edge[e] * u[e], dc_edge[e] * tangential
         across = q_cell[cells_on_edge[e, 1]] - q_cell[cells_on_edge[e, 0]]
         along = q[vertices_on_edge[e, 1]] - q[vertices_on_edge[e, 0]]

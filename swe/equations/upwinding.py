@@ -14,9 +14,9 @@ one is simpler, and of first order.
 """
 
 from mesh.arrays import Array
-from mesh.discrete.operators import vertex_to_cell
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
+from swe.equations.anticipation import by_gradient
 from swe.equations.terms import Term
 from swe.state import State
 
@@ -37,18 +37,4 @@ class Upwinding(Term):
 
     def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
         """See `Term`."""
-        mesh = self._mesh
-        kernels.blend_upwind(
-            state.normal_velocity,
-            potential_vorticity,
-            vertex_to_cell(mesh, potential_vorticity),
-            self.factor,
-            mesh.cells_on_edge,
-            mesh.vertices_on_edge,
-            mesh.n_edges_on_edge,
-            mesh.edges_on_edge,
-            mesh.weights_on_edge,
-            mesh.dc_edge,
-            mesh.dv_edge,
-            at_edges,
-        )
+        kernels.blend_upwind(*by_gradient(self._mesh, state, potential_vorticity, self.factor, at_edges))
