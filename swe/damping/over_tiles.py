@@ -167,7 +167,7 @@ def _change(tiles: TileArrays, scratch: Arrays, put_aside: Array, factor: float,
     """Add factor lap(lap u) to u at all edges."""
     n_tiles = tiles[1].shape[0]
     for tile in numba.prange(n_tiles):
-        _put_aside_of_tile(tile, tiles[2], tiles[3], u, put_aside)
+        _put_aside_of_tile(np.int64(tile), tiles[2], tiles[3], u, put_aside)
     for tile in numba.prange(n_tiles):
         use_widest_vectors()  # type: ignore[call-arg]
-        _change_in_tile(tile, numba.get_thread_id(), tiles, scratch, put_aside, factor, u)
+        _change_in_tile(np.int64(tile), numba.get_thread_id(), tiles, scratch, put_aside, factor, u)

@@ -228,7 +228,7 @@ def one_pass(
     for tile in numba.prange(unsound.size):
         use_widest_vectors()  # type: ignore[call-arg]
         _pass_of_tile(
-            tile,
+            np.int64(tile),
             numba.get_thread_id(),
             tiles,
             scratch,

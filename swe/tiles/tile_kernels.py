@@ -11,7 +11,8 @@ cell in its prefix form, O(n) for n sides. Each cell adds its Bernoulli function
 d_e du_e/dt = (Q + B) of the first cell - (Q + B) of the second.
 
 Indices are unsigned, because signed ones are tested for wrap-around. Slices are taken in functions that the parallel
-loop calls, because the compiler learns that arrays do not overlap only if the loop itself makes no views.
+loop calls, because the compiler learns that arrays do not overlap only if the loop itself makes no views. Numbers of
+tiles are signed there, or else all these functions would be compiled twice, as parallel loops count without signs.
 """
 
 import numba
@@ -285,7 +286,7 @@ def stage(
     for tile in numba.prange(unsound.size):
         use_widest_vectors()  # type: ignore[call-arg]
         _stage_of_tile(
-            tile,
+            np.int64(tile),
             numba.get_thread_id(),
             tiles,
             scratch,

@@ -37,6 +37,7 @@ def test_starts_are_listed_and_drawn(meshes: list[Start], tmp_path: Path) -> Non
     assert np.mean(right.get_lines()[0].get_ydata()) == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_the_page_has_every_part(rows: list[Row], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The page on mesh generation, of few and small meshes."""
     small = {"CIRCLE_CELLS": 200, "RANDOM_CELLS": 162, "OPTIMIZER_CELLS": 162, "RANDOM_SEEDS": range(1)}

@@ -33,6 +33,7 @@ def test_study_of_time_steps(trisk: Call, tmp_path: Path) -> None:
     assert (code, out) == (0, f"{tmp_path / 'study' / 'report.html'}\n")
 
 
+@pytest.mark.slow
 def test_studies_of_both_schemes(trisk: Call, tmp_path: Path) -> None:
     schemes = ("--scheme", "ringler2010", "--scheme", "consistent")
     options = ("--family", "scvt", "--cells", 162, "--days", 0.25)

@@ -230,6 +230,7 @@ def test_several_times_are_refused(tmp_path: Path) -> None:
         read_density(path)
 
 
+@pytest.mark.slow
 def test_degrees_and_radians_give_one_mesh(tmp_path: Path) -> None:
     """Cell widths that differ by a factor of four, as they come from a program that writes widths on a grid."""
     width = 75.0 - 45.0 * np.tanh((field(LONGITUDE[None], LATITUDE[:, None]) - 2.0) / 0.3)

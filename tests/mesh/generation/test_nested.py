@@ -16,6 +16,7 @@ def coarse() -> ScvtResult:
     return generate_scvt(MeshRequest(642))
 
 
+@pytest.mark.slow
 def test_generators_beyond_the_transition_stay(coarse: ScvtResult) -> None:
     result = nested_scvt(coarse.points, coarse.triangles, BOX, limits=Limits(1e-4))
     outside = coarse.points[BOX(coarse.points) == 1.0]

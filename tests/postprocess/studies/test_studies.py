@@ -186,6 +186,7 @@ def test_a_run_that_fails_is_a_line_of_the_table(plan: Plan, tmp_path: Path, mon
     assert page.count("<img") == 1
 
 
+@pytest.mark.slow
 def test_fluid_at_rest_has_no_errors_to_draw(tmp_path: Path) -> None:
     plan = Plan(tmp_path, find_case("lake-at-rest"), 0.25, 0.25, ("scvt",), (162, 642))
     members, rows = mesh_study.carry_out(plan, False, silent)

@@ -146,6 +146,7 @@ def test_wrong_requests_are_refused(icosahedral_mesh: VoronoiMesh, tmp_path: Pat
         Simulation(icosahedral_mesh, case, tmp_path / "file" / "run")
 
 
+@pytest.mark.slow
 def test_uxarray_opens_and_plots_a_run(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     uxarray = pytest.importorskip("uxarray")
     Simulation(icosahedral_mesh, Williamson5(), tmp_path).run(days=1, progress=False)

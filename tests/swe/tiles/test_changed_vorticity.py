@@ -19,8 +19,13 @@ from swe.tiles.fused import FusedRungeKutta, why_not_fused
 from tests.cut_mesh import without_cap
 from tests.swe.random_model import RADIUS, random_model
 
-SCHEMES = pytest.mark.parametrize("scheme", [Ringler2010, Consistent])
-NAMES = pytest.mark.parametrize("names", [("anticipation",), ("upwinding",), ("anticipation", "upwinding")])
+ANTICIPATION, UPWINDING, BOTH = ("anticipation",), ("upwinding",), ("anticipation", "upwinding")
+QUICK = [(ANTICIPATION, Ringler2010), (BOTH, Consistent)]
+SLOW = [(UPWINDING, Ringler2010), (BOTH, Ringler2010), (ANTICIPATION, Consistent), (UPWINDING, Consistent)]
+COMBINATIONS = pytest.mark.parametrize(
+    ("names", "scheme"), [*QUICK, *(pytest.param(*each, marks=pytest.mark.slow) for each in SLOW)]
+)
+"""Terms and schemes; each combination is compiled by itself, for half a minute."""
 TIME_STEP = 20.0
 
 
@@ -52,22 +57,19 @@ def assert_tendencies_agree(mesh: VoronoiMesh, names: tuple[str, ...], scheme: t
     assert np.abs(expected.normal_velocity - without.normal_velocity).max() > 1e-4 * largest
 
 
-@SCHEMES
-@NAMES
+@COMBINATIONS
 @pytest.mark.usefixtures("few_or_many_tiles")
 def test_tendencies_agree(any_mesh: VoronoiMesh, names: tuple[str, ...], scheme: type[Scheme]) -> None:
     assert_tendencies_agree(any_mesh, names, scheme)
 
 
-@SCHEMES
-@NAMES
+@COMBINATIONS
 @pytest.mark.usefixtures("few_or_many_tiles")
 def test_tendencies_agree_beside_walls(any_mesh: VoronoiMesh, names: tuple[str, ...], scheme: type[Scheme]) -> None:
     assert_tendencies_agree(without_cap(any_mesh), names, scheme)
 
 
-@SCHEMES
-@NAMES
+@COMBINATIONS
 def test_steps_agree_and_do_not_depend_on_threads(
     larger_mesh: VoronoiMesh, names: tuple[str, ...], scheme: type[Scheme], monkeypatch: pytest.MonkeyPatch
 ) -> None:
