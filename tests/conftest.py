@@ -14,6 +14,20 @@ import pytest
 from cases import Williamson1, Williamson2, Williamson5
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
 from swe import Simulation
+from swe.integrators import Integrator
+
+MANY_TESTS = 500
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Let two workers of many tests begin with other kernels, as neither should compile what the other does."""
+    worker = os.environ.get("PYTEST_XDIST_WORKER")
+    if worker is None or len(session.items) < MANY_TESTS:
+        return
+    integrators: tuple[Integrator, ...] = ("rk4", "rrk4") if worker == "gw0" else ("fbrk3", "rfbrk3")
+    mesh = scvt_mesh(42) if worker == "gw0" else random_mesh(42, seed=1)
+    for integrator in integrators:
+        Simulation(mesh, Williamson5(), integrator=integrator).run(days=0.1, progress=False)
 
 
 def random_mesh(cells: int, seed: int) -> VoronoiMesh:

@@ -247,6 +247,13 @@ def one_pass(
         )
 
 
+@inlined
+def _copy(values: Array, result: Array) -> None:
+    """Term by term, since an assignment of slices brings its messages along, which compile for seconds."""
+    for i in range(values.size):
+        result[i] = values[i]
+
+
 FRACTIONS = tuple(stage.fraction for stage in FB_RK32)
 WEIGHTS = tuple((stage.new, stage.last, stage.start) for stage in FB_RK32)
 
@@ -280,18 +287,19 @@ def forward_backward_steps(
     following = spare
     if not moving:
         u1 = u2 = u
+    yes, no = np.bool_(True), np.bool_(False)  # constants would have `one_pass` compiled for each choice of them
     c1, c2, c3 = FRACTIONS[0] * time_step, FRACTIONS[1] * time_step, FRACTIONS[2] * time_step
-    one_pass(tiles, scratch, gravity, False, True, False, (h, h, h), WEIGHTS[0], (u, u, u), 0.0, h, c1, h1, unsound)
+    one_pass(tiles, scratch, gravity, no, yes, no, (h, h, h), WEIGHTS[0], (u, u, u), 0.0, h, c1, h1, unsound)
     taken = 0
     while taken < count:
         taken += 1
         more = taken < count
         one_pass(
-            tiles, scratch, gravity, moving, True, False, (h1, h, h), WEIGHTS[0], (u, u, u1), c1, h, c2, h2, unsound
+            tiles, scratch, gravity, moving, yes, no, (h1, h, h), WEIGHTS[0], (u, u, u1), c1, h, c2, h2, unsound
         )
         # The thickness after the step takes the place of h1, its velocity that of u1.
         one_pass(
-            tiles, scratch, gravity, moving, True, False, (h2, h, h), WEIGHTS[1], (u, u1, u2), c2, h, c3, h1, unsound
+            tiles, scratch, gravity, moving, yes, no, (h2, h, h), WEIGHTS[1], (u, u1, u2), c2, h, c3, h1, unsound
         )
         one_pass(
             tiles,
@@ -299,7 +307,7 @@ def forward_backward_steps(
             gravity,
             moving,
             more,
-            True,
+            yes,
             (h1, h2, h),
             WEIGHTS[2],
             (u, u2, u1),
@@ -314,7 +322,7 @@ def forward_backward_steps(
         if np.any(unsound > 0):
             break
     if taken % 3 != 0:
-        y[0][:] = h
+        _copy(h, y[0])
     if taken % 2 != 0 and moving:
-        y[1][:] = u
+        _copy(u, y[1])
     return taken
