@@ -27,9 +27,16 @@ class DissipationOverTiles(Term):
         self.coefficient = dissipation.coefficient
         self._tiles = tiles = cut_for_dissipation(mesh)
         self._put_aside = np.empty(len(tiles.arrays[2]))
+        self._n_edges = mesh.n_edges
         threads = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]
         sizes = (2 * MIRROR, 2 * MIRROR, tiles.cells, tiles.vertices)
         self._scratch = tuple(np.zeros((threads, size)) for size in sizes)
+
+    @property
+    def bytes_per_step(self) -> int:
+        """Bytes that a step must move: tiles once, what is put aside read, written and read, velocities changed."""
+        tiles = sum(array.nbytes for array in self._tiles.arrays)
+        return tiles + 3 * self._put_aside.nbytes + 2 * 8 * self._n_edges
 
     def apply(self, state: State, time_step: float) -> None:
         """See `Term`."""

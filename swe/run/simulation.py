@@ -44,7 +44,7 @@ from swe.state import State
 from swe.stepping.forward_backward import ForwardBackward
 from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import Schedule, last_shared
-from swe.stepping.steppers import FixedSteps, RelaxedSteps, SplitMethod, Stepper
+from swe.stepping.steppers import FixedSteps, RelaxedSteps, Stepper, followed_by
 from swe.stepping.time_stepping import RungeKutta
 from swe.tiles.fused import FusedMethod, why_not_fused
 
@@ -211,7 +211,7 @@ class Simulation:
             terms = terms_over_tiles(self.mesh, terms)
         if self._stepping.relaxed:
             return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
-        return FixedSteps(SplitMethod(self.method, terms) if terms else self.method)
+        return FixedSteps(followed_by(terms, self.method))
 
     def _present_courant_number(self) -> float:
         return self.model.courant_number(self.state, self.configuration.time_step)

@@ -79,6 +79,11 @@ class SplitMethod:
         return steps
 
 
+def followed_by(terms: Sequence[Term], method: Method) -> Method:
+    """The method itself if there are no `terms` that act after steps."""
+    return SplitMethod(method, terms) if terms else method
+
+
 class RelaxedSteps:
     """Steps whose increments are scaled to conserve total energy, and the clock with them.
 

@@ -49,19 +49,21 @@ def _one_cell(
     P: Array,
     inverse_area: Array,
     potential: Array,
-    dh: Array,
+    dh: Array | None,
     S: Array,
 ) -> None:
     """dh_i/dt, and for every side j the sum S_j of the Bernoulli function B and of the cell's part of Q.
 
     With G_j the outflow h_e l_e u_e through side j, q_j the mean of its two vertices and P_j the fraction of the area
-    in the kites before side j, counted from the first,
+    in the kites before side j, counted from the first, let R_j = sum_{k<j} G_k + G_j/2 be the outflow up to the middle
+    of the side, and R_j^q the same sum of q_k G_k. Then
 
-        Q_j = 1/2 sum_k (q_j + q_k) G_k (1/2 + P_j - P_k - [k < j] - [k = j]/2).
+        Q_j = 1/2 [q_j (sum_k G_k (1/2 + P_j - P_k) - R_j) + sum_k q_k G_k (1/2 + P_j - P_k) - R_j^q].
 
-    The sums omit the factors 1/2 of h_e and q_j, which are applied at the end.
+    The first round keeps q_j R_j + R_j^q in S, so that the second neither gathers nor sums again. The sums omit the
+    factors 1/2 of h_e and q_j, which are applied at the end. Without `dh`, thickness moves in another loop.
     """
-    outflow = outflow_P = qG = qG_P = energy = 0.0
+    passed = q_passed = half_P = q_half_P = energy = 0.0
     last = first_value(q, vertices, start + (sides - 1) * stride)
     before = last
     for j in range(sides):
@@ -69,27 +71,25 @@ def _one_cell(
         U_j = at_side(U, edges, r)
         normal = ratio[r] * U_j
         energy += normal * U_j
-        G_j = (h[i] + h[cells[r]]) * normal
+        half = 0.5 * ((h[i] + h[cells[r]]) * normal)
         q_j, before = twice_mean(q, vertices, r, before)
-        qG_j = q_j * G_j
-        outflow += G_j
-        outflow_P += P[r] * G_j
-        qG += qG_j
-        qG_P += P[r] * qG_j
-    dh[i] = -0.5 * outflow * inverse_area[i]
-    B = potential[i] + gravity * h[i] + 0.25 * energy * inverse_area[i]
-    beyond = 0.5 * outflow - outflow_P
-    q_beyond = 0.5 * qG - qG_P
+        q_half = q_j * half
+        passed += half
+        q_passed += q_half
+        S[r] = q_j * passed + q_passed
+        passed += half
+        q_passed += q_half
+        half_P += P[r] * half
+        q_half_P += P[r] * q_half
+    if dh is not None:
+        dh[i] = -0.5 * passed * inverse_area[i]
+    rest = 0.5 * passed - 2.0 * half_P
+    B = potential[i] + gravity * h[i] + 0.25 * energy * inverse_area[i] + 0.125 * (0.5 * q_passed - 2.0 * q_half_P)
     before = last
     for j in range(sides):
         r = start + j * stride
-        G_j = (h[i] + h[cells[r]]) * (ratio[r] * at_side(U, edges, r))
         q_j, before = twice_mean(q, vertices, r, before)
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
-        S[r] = B + 0.125 * (q_j * (beyond + P[r] * outflow) + (q_beyond + P[r] * qG))
-        beyond -= 0.5 * G_j
-        q_beyond -= 0.5 * (q_j * G_j)
+        S[r] = B + 0.125 * (q_j * (rest + P[r] * passed) + (P[r] * q_passed - S[r]))
 
 
 @inlined
@@ -108,7 +108,7 @@ def all_cells(
     larger: Index,
     larger_start: Index,
     larger_sides: Index,
-    dh: Array,
+    dh: Array | None,
     S: Array,
 ) -> None:
     """Neighbouring cells in the lanes of a vector, side by side; then the cells with more than `RING` sides."""

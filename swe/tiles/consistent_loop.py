@@ -105,7 +105,7 @@ def _one_cell(
     dh: Array,
     S: Array,
 ) -> None:
-    """dh_i/dt, and S_j as in `swe.tiles.contributions`, with twice the outflow G_j from the parts of both cells."""
+    """dh_i/dt, and S_j as in `swe.tiles.cell_loop`, with twice the outflow G_j from the parts of both cells."""
     passed = q_passed = half_P = q_half_P = 0.0
     last = first_value(q, vertices, start + (sides - 1) * stride)
     before = last

@@ -15,7 +15,7 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from swe.integrators import FB_RK32
-from swe.tiles.contributions import contributions
+from swe.tiles.cell_loop import all_cells
 from swe.tiles.layout import LANES, MIRROR, RING, Arrays, TileArrays, compiled, inlined, options
 from swe.tiles.tile_kernels import _count_unsound, _load_cells, _load_edges, _potential_vorticity, use_widest_vectors
 
@@ -157,7 +157,7 @@ def _pass_of_tile(
     if accelerates:
         _load_mean_of_cells(heights, weights, cell, own_cells, halo_cells, local)
         _potential_vorticity(U, local, edges_on_vertex, cells_on_vertex, kites, planetary, q)
-        contributions(
+        all_cells(
             gravity,
             local,
             U,
@@ -172,6 +172,7 @@ def _pass_of_tile(
             larger,
             larger_start,
             larger_sides,
+            None,
             S,
         )
         _move_edges(start, edge, own_edges, halo_edges, S, slots, border, d, velocity_factor, U, moved)
@@ -294,13 +295,9 @@ def forward_backward_steps(
     while taken < count:
         taken += 1
         more = taken < count
-        one_pass(
-            tiles, scratch, gravity, moving, yes, no, (h1, h, h), WEIGHTS[0], (u, u, u1), c1, h, c2, h2, unsound
-        )
+        one_pass(tiles, scratch, gravity, moving, yes, no, (h1, h, h), WEIGHTS[0], (u, u, u1), c1, h, c2, h2, unsound)
         # The thickness after the step takes the place of h1, its velocity that of u1.
-        one_pass(
-            tiles, scratch, gravity, moving, yes, no, (h2, h, h), WEIGHTS[1], (u, u1, u2), c2, h, c3, h1, unsound
-        )
+        one_pass(tiles, scratch, gravity, moving, yes, no, (h2, h, h), WEIGHTS[1], (u, u1, u2), c2, h, c3, h1, unsound)
         one_pass(
             tiles,
             scratch,

@@ -5,6 +5,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 import swe.parallel.exact_sum
 from mesh.compiled_cache import SourcesLocator
 
@@ -20,6 +22,7 @@ def start(cache: Path) -> subprocess.Popen[str]:
     return subprocess.Popen([sys.executable, "-c", PROGRAM], stdout=subprocess.PIPE, text=True, env=environment)
 
 
+@pytest.mark.slow
 def test_processes_that_start_at_once_share_the_cache(tmp_path: Path) -> None:
     together = [start(tmp_path) for _ in range(3)]
     for process in together:

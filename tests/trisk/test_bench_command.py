@@ -54,6 +54,23 @@ def test_another_integrator_is_timed(trisk: Call, icosahedral_mesh: VoronoiMesh,
     assert "FB-RK(3,2)" in out
 
 
+def test_terms_are_timed_too(trisk: Call, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    path = tmp_path / "mesh.nc"
+    write_mesh(icosahedral_mesh, path)
+    found = []
+    for terms in ([], ["--apvm", 0.5], ["--dissipation", 1e15]):
+        code, out, _ = trisk("bench", "--mesh", path, "--json", "-q", *terms)
+        assert code == 0
+        found += json.loads(out)
+    assert [timing["terms"] for timing in found] == [[], ["anticipation"], ["dissipation"]]
+    bytes_moved = [timing["bytes_per_cell_step"] for timing in found]
+    # Anticipation adds a ring of halo; dissipation reads and writes three edges a cell, and some 200 bytes of geometry.
+    assert bytes_moved[0] < bytes_moved[1] < 2.0 * bytes_moved[0]
+    assert 3 * 16 + 100 < bytes_moved[2] - bytes_moved[0] < 3 * 16 + 500
+    code, out, _ = trisk("bench", "--mesh", path, "-q", "--dissipation", 1e15)
+    assert "with dissipation" in out
+
+
 def test_table_of_a_mesh_file(trisk: Call, icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     path = tmp_path / "mesh.nc"
     write_mesh(icosahedral_mesh, path)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
-from trisk.cli.options import Quiet, Recompute, Scheme
+from trisk.cli.options import AnticipationFraction, DissipationCoefficient, Quiet, Recompute, Scheme, UpwindingFactor
 
 if TYPE_CHECKING:
     from mesh import VoronoiMesh
@@ -31,6 +31,9 @@ def bench(
         Literal["rk4", "fbrk3"], typer.Option("--integrator", help="The method whose steps are timed.")
     ] = "rk4",
     scheme: Scheme = "ringler2010",
+    anticipation: AnticipationFraction = 0.0,
+    upwinding: UpwindingFactor = 0.0,
+    dissipation: DissipationCoefficient = 0.0,
     recompute_metrics: Recompute = False,
     as_json: Annotated[bool, typer.Option("--json", help="Print a list of JSON objects.")] = False,
     quiet: Quiet = False,
@@ -39,9 +42,14 @@ def bench(
 
     Reports the cost of a step of test case 5, beside plain loops and the memory bandwidth.
     """
-    results = _timings(
-        mesh_file, cells or (), {"integrator": integrator, "scheme": scheme}, recompute_metrics, not quiet
-    )
+    options = {
+        "integrator": integrator,
+        "scheme": scheme,
+        "anticipation": anticipation,
+        "upwinding": upwinding,
+        "dissipation": dissipation,
+    }
+    results = _timings(mesh_file, cells or (), options, recompute_metrics, not quiet)
     if as_json:
         typer.echo(json.dumps([asdict(timing) for timing in results]))
     else:

@@ -24,6 +24,24 @@ Schemes = Annotated[
         help=f"{SCHEME_HELP} Repeatable, for runs of both side by side; by default ringler2010.",
     ),
 ]
+AnticipationFraction = Annotated[
+    float,
+    typer.Option(
+        "--apvm",
+        help="Fraction of a time step by which potential vorticity is anticipated (APVM); 0.5 in the literature.",
+    ),
+]
+UpwindingFactor = Annotated[
+    float,
+    typer.Option(
+        "--upwinding",
+        help="How far potential vorticity is blended towards the value upstream, from 0 to 1; like --apvm, but "
+        "whatever the time step.",
+    ),
+]
+DissipationCoefficient = Annotated[
+    float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
 Recompute = Annotated[
     bool,

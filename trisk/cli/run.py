@@ -5,7 +5,16 @@ from typing import Annotated, Any, Literal
 
 import typer
 
-from trisk.cli.options import CaseName, Quiet, Recompute, Scheme, Settings
+from trisk.cli.options import (
+    AnticipationFraction,
+    CaseName,
+    DissipationCoefficient,
+    Quiet,
+    Recompute,
+    Scheme,
+    Settings,
+    UpwindingFactor,
+)
 
 
 def run(
@@ -42,24 +51,9 @@ def run(
         ),
     ] = "rk4",
     scheme: Scheme = "ringler2010",
-    anticipation: Annotated[
-        float,
-        typer.Option(
-            "--apvm",
-            help="Fraction of a time step by which potential vorticity is anticipated (APVM); 0.5 in the literature.",
-        ),
-    ] = 0.0,
-    upwinding: Annotated[
-        float,
-        typer.Option(
-            "--upwinding",
-            help="How far potential vorticity is blended towards the value upstream, from 0 to 1; like --apvm, but "
-            "whatever the time step.",
-        ),
-    ] = 0.0,
-    dissipation: Annotated[
-        float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
-    ] = 0.0,
+    anticipation: AnticipationFraction = 0.0,
+    upwinding: UpwindingFactor = 0.0,
+    dissipation: DissipationCoefficient = 0.0,
     fields: Annotated[
         str | None,
         typer.Option(

@@ -12,10 +12,12 @@ TITLES: dict[Integrator, str] = {"rk4": "classical RK4", "fbrk3": "FB-RK(3,2)"}
 
 
 def print_timings(results: Sequence[Timing], case: str) -> None:
-    """Print a table of timings on `case`, all of the same integrator and scheme."""
+    """Print a table of timings on `case`, all of the same integrator, scheme and terms."""
+    terms = f", with {' and '.join(results[0].terms)}" if results[0].terms else ""
     scheme = "" if results[0].scheme == "ringler2010" else f", the {results[0].scheme} scheme"
+    what = f"{case}, {TITLES[results[0].integrator]}{scheme}{terms}"
     table = Table(
-        title=f"{case}, {TITLES[results[0].integrator]}{scheme}: cost per cell and step, medians of alternating turns",
+        title=f"{what}: cost per cell and step, medians of alternating turns",
         caption="ns: fused; plain: plain loops; bytes: every array once for each stage; GB/s: bytes by ns; "
         "triad: GB/s of STREAM; budget: bytes that the triad would move in that time",
     )

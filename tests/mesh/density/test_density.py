@@ -125,7 +125,9 @@ def test_density_that_vanishes_cannot_be_sampled() -> None:
         random_points(10, lambda points: np.zeros(len(points)), np.random.default_rng(0))
 
 
-@pytest.mark.parametrize("start", ["icosahedral", pytest.param("random", marks=pytest.mark.slow), "random-root"])
+@pytest.mark.parametrize(
+    "start", ["icosahedral", *(pytest.param(start, marks=pytest.mark.slow) for start in ("random", "random-root"))]
+)
 def test_refined_circle_converges_with_the_right_widths(start: str) -> None:
     mesh = scvt_mesh(2562, density="refined-circle", start=start, tolerance=1e-5)
     quality = mesh_quality(mesh)

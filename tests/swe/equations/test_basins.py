@@ -113,7 +113,7 @@ def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
         {"integrator": "rrk4"},
         {"integrator": "rfbrk3"},
         {"anticipation": 0.5, "dissipation": 1e15},
-        {"upwinding": 0.3},
+        pytest.param({"upwinding": 0.3}, marks=pytest.mark.slow),
     ],
 )
 def test_a_run_in_a_basin(larger_mesh: VoronoiMesh, options: dict[str, object]) -> None:
