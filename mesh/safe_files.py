@@ -42,9 +42,37 @@ if hasattr(os, "register_at_fork"):
     )
 
 
+class _Dataset(netCDF4.Dataset):
+    """A file of the library that can be kept in the mode in which things are defined (`definitions`)."""
+
+    def _redef(self) -> None:
+        if not self.__dict__.get("defining"):
+            super()._redef()  # type: ignore[misc]
+
+    def _enddef(self) -> None:
+        if not self.__dict__.get("defining"):
+            super()._enddef()  # type: ignore[misc]
+
+
+@contextmanager
+def definitions(file: netCDF4.Dataset) -> Iterator[None]:
+    """Define dimensions, variables and attributes of an open file together, before their values are written.
+
+    The library leaves the mode of definitions after each of them, and a classic file then moves all of its data.
+    """
+    if file.data_model != "NETCDF4":
+        file._redef()
+        file.__dict__["defining"] = True
+    try:
+        yield
+    finally:
+        if file.__dict__.pop("defining", False):
+            file._enddef()
+
+
 def opened_dataset(path: str | os.PathLike[str], mode: Mode = "r", **options: Any) -> netCDF4.Dataset:
     """Open a NetCDF file whose name may hold any bytes; hold `netcdf_lock` for this and for all use of the file."""
-    return netCDF4.Dataset(os.fspath(path), mode, encoding=BYTES_OF_NAMES, **options)
+    return _Dataset(os.fspath(path), mode, encoding=BYTES_OF_NAMES, **options)
 
 
 @contextmanager

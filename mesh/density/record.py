@@ -87,14 +87,19 @@ def _from_source(source: str, name: str) -> tuple[Density | None, str]:
     return None, f"unknown, since the density was {variable} of {name}, which is missing or has changed since"
 
 
-def write_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
-    """Write to an open mesh file the source of a density from a file, and which generators were held fixed."""
+def define_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
+    """Define in an open mesh file the source of a density from a file, and which generators were held fixed."""
     if mesh.density_source:
         file.density_source = mesh.density_source
     if mesh.fixed_cells is not None:
         fixed = file.createVariable(FIXED_VARIABLE, "i4", ("nCells",))
         fixed.setncatts({"units": "1", "long_name": "1 where the generator was held while others moved, 0 elsewhere"})
-        fixed[:] = mesh.fixed_cells
+
+
+def fill_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
+    """Write what `define_generation` has defined."""
+    if mesh.fixed_cells is not None:
+        file[FIXED_VARIABLE][:] = mesh.fixed_cells
 
 
 def read_generation(file: netCDF4.Dataset, n_cells: int) -> tuple[str, str, NDArray[np.bool_] | None]:

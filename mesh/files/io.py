@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
-from mesh.density.record import read_generation, write_generation
+from mesh.density.record import define_generation, fill_generation, read_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
 from mesh.files.assembly import assembled_mesh
 from mesh.files.mesh_file import FileContent, read_content
-from mesh.safe_files import AnyPath, dataset, written_aside
+from mesh.safe_files import AnyPath, dataset, definitions, written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 
 PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}
@@ -54,12 +54,15 @@ def write_mesh(
     require_format(file_format)
     try:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
-            file.createDimension("Time", None)  # of no length; some readers of the format ask for it
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             history = f"{stamp}: {history or 'written by trisk'}"
-            file.setncatts(mesh_attributes(mesh, history, known_hash or mesh_hash(mesh)))
-            write_mesh_variables(file, mesh)
-            write_generation(file, mesh)
+            with definitions(file):
+                file.createDimension("Time", None)  # of no length; some readers of the format ask for it
+                file.setncatts(mesh_attributes(mesh, history, known_hash or mesh_hash(mesh)))
+                define_mesh_variables(file, mesh)
+                define_generation(file, mesh)
+            fill_mesh_variables(file, mesh)
+            fill_generation(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
         raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
@@ -86,8 +89,8 @@ def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str,
     }
 
 
-def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
-    """Define the mesh's dimensions in an open file and write its arrays, or those in `names` only."""
+def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
+    """Define the mesh's dimensions in an open file and its arrays, or those in `names` only."""
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
         file.createDimension(DIMENSIONS[name], size)
@@ -96,15 +99,24 @@ def write_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozen
     for place, dimension in PLACES.items():
         identifier = file.createVariable(f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],))
         identifier.long_name = f"number of each {place}"
-        identifier[:] = np.arange(1, sizes[dimension] + 1)
-    for variable in MESH_VARIABLES:
-        if names is not None and variable.name not in names:
-            continue
+    for variable in _variables(names):
         dimensions = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
         target = file.createVariable(variable.file_name, "i4" if variable.integer else "f8", dimensions)
         target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
+
+
+def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
+    """Write what `define_mesh_variables` has defined."""
+    sizes = dimension_sizes(mesh)
+    for place, dimension in PLACES.items():
+        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1)
+    for variable in _variables(names):
         values = getattr(mesh, variable.name)
-        target[:] = values + 1 if variable.is_index else values
+        file[variable.file_name][:] = values + 1 if variable.is_index else values
+
+
+def _variables(names: frozenset[str] | None) -> list[MeshVariable]:
+    return [variable for variable in MESH_VARIABLES if names is None or variable.name in names]
 
 
 def _coordinates(variable: MeshVariable) -> dict[str, str]:

@@ -17,8 +17,8 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.conventions import BY_NAME, COORDINATES
-from mesh.files.io import mesh_attributes, write_mesh_variables
-from mesh.safe_files import dataset, netcdf_lock, opened_dataset, written_aside
+from mesh.files.io import define_mesh_variables, fill_mesh_variables, mesh_attributes
+from mesh.safe_files import dataset, definitions, netcdf_lock, opened_dataset, written_aside
 from swe.diagnostics.budgets import rate_series
 from swe.diagnostics.outputs import FIELDS, SERIES, TOPOGRAPHY, Evaluation, Field, Series, diagnostics_row
 from swe.equations.model import ShallowWaterModel
@@ -52,20 +52,22 @@ def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], 
     mesh = model.mesh
     with _new_file(path) as file:
         identity = mesh_attributes(mesh, "snapshots of a shallow-water run", description["mesh_hash"])
-        file.setncatts({**identity, **_attributes(model, description)})
-        write_mesh_variables(file, mesh, GEOMETRY)
-        _define_time(file)
-        _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
+        with definitions(file):
+            file.setncatts({**identity, **_attributes(model, description)})
+            define_mesh_variables(file, mesh, GEOMETRY)
+            _define_time(file)
+            _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
+            for name in fields:
+                _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
+        fill_mesh_variables(file, mesh, GEOMETRY)
         file["topography"][:] = model.topography
-        for name in fields:
-            _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
 
 
 def create_diagnostics(
     path: Path, model: ShallowWaterModel, series: Mapping[str, Series], description: Mapping[str, Any]
 ) -> None:
     """Create a diagnostics file without rows, for `series`; raise `RunError` if it cannot be written."""
-    with _new_file(path) as file:
+    with _new_file(path) as file, definitions(file):
         file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(model, description)})
         _define_time(file)
         for name, each in series.items():

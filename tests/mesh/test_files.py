@@ -9,7 +9,7 @@ import pytest
 
 from mesh import VoronoiMesh, read_mesh, write_mesh
 from mesh.files.io import mesh_hash
-from mesh.safe_files import written_aside
+from mesh.safe_files import dataset, definitions, written_aside
 
 READERS = """
 import sys
@@ -60,3 +60,22 @@ def test_what_cannot_be_written(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "pipe")
     with pytest.raises(FileExistsError, match="something that is no file"), written_aside(tmp_path / "pipe"):
         pass
+
+
+@pytest.mark.parametrize("file_format", ["NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4"])
+def test_definitions_are_made_together(tmp_path: Path, file_format: str) -> None:
+    """A classic file leaves the mode of definitions, and writes its header, once and not for each of them."""
+    path = tmp_path / "file.nc"
+    with dataset(path, "w", format=file_format) as file:
+        with definitions(file):
+            file.createDimension("n", 3)
+            for name in ("a", "b"):
+                file.createVariable(name, "f8", ("n",)).setncatts({"units": "m"})
+            if file_format != "NETCDF4":
+                assert path.stat().st_size == 0
+        file["b"][:] = [1.0, 2.0, 3.0]
+        file.title = "defined later"
+    with dataset(path) as file:
+        assert file.title == "defined later"
+        assert [file[name].units for name in ("a", "b")] == ["m", "m"]
+        assert file["b"][:].tolist() == [1.0, 2.0, 3.0]
