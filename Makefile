@@ -60,7 +60,7 @@ verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%.done)  ## 
 		--family refined-circle --family nested --days 50 --error-day 15 -o $(STUDY)/williamson5
 	$(BIN)/trisk study mesh williamson6 $(SCHEMES) --cells 2562 --cells 10242 --family scvt \
 		-o $(STUDY)/williamson6
-	$(BIN)/trisk study mesh galewsky $(GALEWSKY_CELLS:%=--cells %) --family scvt -o $(STUDY)/galewsky
+	$(BIN)/trisk study mesh galewsky $(SCHEMES) $(GALEWSKY_CELLS:%=--cells %) --family scvt -o $(STUDY)/galewsky
 	$(BIN)/trisk study time williamson5 --cells 2562 --dt 150 --dt 300 --dt 600 --dt 1200 -o $(STUDY)/time
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/galewsky/runs/scvt-%) -o $(STUDY)/galewsky/maps
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/jet-%) $(foreach day,1 2 3 4 5 6,--day $(day)) -o $(STUDY)/jet
