@@ -65,3 +65,22 @@ def test_the_path_of_a_run_is_told(trisk, mesh_file: Path, tmp_path: Path) -> No
     code, _, err = trisk("run", "williamson2", "--mesh", mesh_file, "--days", 0.05, "-o", tmp_path / "run", "--force")
     assert "plain loops" not in err
     assert json.loads((tmp_path / "run" / "run.json").read_text())["loops"] == "fused"
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "name"),
+    [("--apvm", 0.5, "anticipation"), ("--upwinding", 0.3, "upwinding"), ("--dissipation", 1e15, "dissipation")],
+)
+def test_options_reach_the_run(trisk, mesh_file: Path, tmp_path: Path, option: str, value: float, name: str) -> None:
+    """By the record, and by the rate of its term, which no other option makes."""
+    run = ("run", "williamson5", "--mesh", mesh_file, "--days", 0.05, "-q", "-o", tmp_path / "run")
+    assert trisk(*run, "--set", "radius=6371229", option, value) == (0, "", "")
+    record = json.loads((tmp_path / "run" / "run.json").read_text())
+    terms = {key: record["configuration"][key] for key in ("anticipation", "upwinding", "dissipation")}
+    assert terms == {"anticipation": 0.0, "upwinding": 0.0, "dissipation": 0.0, name: value}
+    assert record["parameters"]["radius"] == 6371229.0
+    with netCDF4.Dataset(tmp_path / "run" / "diagnostics.nc") as file:
+        assert file[f"potential_enstrophy_rate_{name}"][-1] != 0.0
+    code, _, err = trisk(*run, option, -1, "--force")
+    assert code == 2
+    assert "-1" in err
