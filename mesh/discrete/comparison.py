@@ -79,8 +79,7 @@ def angle_difference(mesh: VoronoiMesh, exact: Metrics) -> Difference:
 def angles_in_place(mesh: VoronoiMesh, exact: Metrics) -> Array:
     """Angles (n_edges,) of the normals at the longitudes and latitudes that `mesh` has, radians."""
     points = np.stack([exact.x_cell, exact.y_cell, exact.z_cell], axis=1)
-    normal = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
-    return edge_angles(normal, mesh.lon_edge, mesh.lat_edge)
+    return edge_angles(points, mesh.cells_on_edge, mesh.lon_edge, mesh.lat_edge)
 
 
 def _local_sizes(mesh: VoronoiMesh, exact: Metrics) -> dict[str, Array]:

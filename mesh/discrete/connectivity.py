@@ -6,7 +6,7 @@ Everything is checked exactly. Errors name the first offending entities, counted
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Index
+from mesh.arrays import Index, by_blocks
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError, require
@@ -76,17 +76,32 @@ def _check_ranges(mesh: Topology) -> None:
 
 def _check_rings(mesh: Topology) -> None:
     """Every cell's edges and neighbours agree with the cells of the edges, each edge in exactly two rings."""
-    cell = np.arange(mesh.n_cells)[:, None]
+
+    def of_own_edges(cells: Index, edges: Index, counts: Index) -> NDArray[np.bool_]:
+        inside = np.arange(mesh.max_edges) < counts[:, None]
+        ends = mesh.cells_on_edge[np.where(inside, edges, 0)]
+        return ((ends == cells[:, None, None]).sum(axis=2) == 1) | ~inside
+
+    def of_cells_across(cells: Index, edges: Index, counts: Index, across: Index) -> NDArray[np.bool_]:
+        inside = np.arange(mesh.max_edges) < counts[:, None]
+        ends = mesh.cells_on_edge[np.where(inside, edges, 0)]
+        return (ends.sum(axis=2) - cells[:, None] == across) | ~inside
+
+    rings = np.arange(mesh.n_cells), mesh.edges_on_cell, mesh.n_edges_on_cell
+    require(by_blocks(of_own_edges, *rings), "cells", "edgesOnCell lists an edge that cellsOnEdge gives to other cells")
+    require(
+        by_blocks(of_cells_across, *rings, mesh.cells_on_cell),
+        "cells",
+        "cellsOnCell is not the cell across edgesOnCell",
+    )
     inside = mesh.on_ring
-    ends = mesh.cells_on_edge[np.where(inside, mesh.edges_on_cell, 0)]
-    own = (ends == cell[:, :, None]).sum(axis=2)
-    require((own == 1) | ~inside, "cells", "edgesOnCell lists an edge that cellsOnEdge gives to other cells")
-    across = ends.sum(axis=2) - cell
-    require((across == mesh.cells_on_cell) | ~inside, "cells", "cellsOnCell is not the cell across edgesOnCell")
     uses = np.bincount(mesh.edges_on_cell[inside], minlength=mesh.n_edges)
     require(uses == 2, "edges", "edgesOnCell does not list the edge in exactly two cells")
     require(
-        _in_both(mesh.vertices_on_edge, mesh.edges_on_cell, mesh.vertices_on_cell, inside, mesh.n_edges_on_cell),
+        by_blocks(
+            lambda *rings: _in_both(mesh.vertices_on_edge, *rings),
+            *(mesh.edges_on_cell, mesh.vertices_on_cell, inside, mesh.n_edges_on_cell),
+        ),
         "cells",
         "verticesOnCell does not lie between one edge and the next in edgesOnCell",
     )
@@ -124,33 +139,40 @@ def _check_vertices(mesh: Topology) -> None:
 
 def _check_edges(mesh: Topology) -> None:
     """The tangent runs counter-clockwise round the first cell; `edges_on_edge` goes round both cells from the edge."""
-    edge = np.arange(mesh.n_edges)
-    size = mesh.n_edges_on_cell[mesh.cells_on_edge]
-    for side in (0, 1):
-        ring = mesh.edges_on_cell[mesh.cells_on_edge[:, side]]
-        position = np.argmax(ring == edge[:, None], axis=1)
-        if side == 0:
-            _check_tangents(mesh, position)
-        offset = 0 if side == 0 else size[:, 0] - 1
-        for step in range(1, mesh.max_edges):
-            inside = step < size[:, side]
-            place = position + step
-            expected = ring[edge, np.where(place < size[:, side], place, place - size[:, side])]
-            found = mesh.edges_on_edge[edge, np.where(inside, offset + step - 1, 0)]
-            require(
-                (found == expected) | ~inside,
-                "edges",
-                "edgesOnEdge does not go counter-clockwise round the first cell, then round the second",
-            )
 
+    def along_tangent(edges: Index, cells: Index, vertices: Index) -> NDArray[np.bool_]:
+        first = cells[:, 0]
+        position = _positions(mesh, edges, first)
+        before = np.where(position == 0, mesh.n_edges_on_cell[first], position) - 1
+        ring = mesh.vertices_on_cell
+        right: NDArray[np.bool_] = (vertices[:, 0] == ring[first, before]) & (vertices[:, 1] == ring[first, position])
+        return right
 
-def _check_tangents(mesh: Topology, position: Index) -> None:
-    """The two vertices of each edge, which has this position in the ring of its first cell."""
-    first = mesh.cells_on_edge[:, 0]
-    before = np.where(position == 0, mesh.n_edges_on_cell[first], position) - 1
+    def round_both_cells(edges: Index, cells: Index, edges_on_edge: Index) -> NDArray[np.bool_]:
+        right, row = np.ones(len(edges), np.bool_), np.arange(len(edges))
+        size = mesh.n_edges_on_cell[cells]
+        for side in (0, 1):
+            position, count = _positions(mesh, edges, cells[:, side]), size[:, side]
+            offset = 0 if side == 0 else size[:, 0] - 1
+            for step in range(1, mesh.max_edges):
+                inside, place = step < count, position + step
+                expected = mesh.edges_on_cell[cells[:, side], np.where(place < count, place, place - count)]
+                right &= (edges_on_edge[row, np.where(inside, offset + step - 1, 0)] == expected) | ~inside
+        return right
+
+    edges = np.arange(mesh.n_edges)
     require(
-        (mesh.vertices_on_edge[:, 0] == mesh.vertices_on_cell[first, before])
-        & (mesh.vertices_on_edge[:, 1] == mesh.vertices_on_cell[first, position]),
+        by_blocks(along_tangent, edges, mesh.cells_on_edge, mesh.vertices_on_edge),
         "edges",
         "verticesOnEdge does not run along the tangent, 90 degrees left of the normal given by cellsOnEdge",
     )
+    require(
+        by_blocks(round_both_cells, edges, mesh.cells_on_edge, mesh.edges_on_edge),
+        "edges",
+        "edgesOnEdge does not go counter-clockwise round the first cell, then round the second",
+    )
+
+
+def _positions(mesh: Topology, edges: Index, cells: Index) -> Index:
+    """Where each edge stands in the ring of its cell."""
+    return np.argmax(mesh.edges_on_cell[cells] == edges[:, None], axis=1)

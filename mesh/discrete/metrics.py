@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.arrays import Array, Index, sum_by_index
+from mesh.arrays import Array, Index, by_blocks, sum_by_index
 from mesh.discrete.weights import tangential_weights
 from mesh.geometry.sphere import (
     arc_length,
@@ -23,21 +23,20 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     cells, where the two arcs of the edge cross. Kites have signed areas, so that they sum to their triangle
     even where a circumcentre lies outside; the area of a cell is the sum of its kites.
     """
-    vertices = circumcenter(*(points[topology.cells_on_vertex[:, k]] for k in range(3)))
-    centers = points[topology.cells_on_edge]
-    edges = normalize(centers[:, 0] + centers[:, 1])
+    vertices = by_blocks(lambda cells: circumcenter(*(points[cells[:, k]] for k in range(3))), topology.cells_on_vertex)
+    edges = by_blocks(lambda cells: normalize(points[cells[:, 0]] + points[cells[:, 1]]), topology.cells_on_edge)
     kites = kite_areas(points, edges, vertices, topology.cells_on_vertex, topology.edges_on_vertex)
     area_cell = sum_by_index(topology.cells_on_vertex, kites, len(points))
-    dc_edge = arc_length(centers[:, 0], centers[:, 1])
-    ends = vertices[topology.vertices_on_edge]
-    dv_edge = arc_length(ends[:, 0], ends[:, 1])
+    dc_edge = _lengths(points, topology.cells_on_edge)
+    dv_edge = _lengths(vertices, topology.vertices_on_edge)
+    at_edge = _coordinates("edge", edges)
     return Metrics(
         **_coordinates("cell", points),
-        **_coordinates("edge", edges),
+        **at_edge,
         **_coordinates("vertex", vertices),
         dc_edge=dc_edge,
         dv_edge=dv_edge,
-        angle_edge=edge_angles(centers[:, 1] - centers[:, 0], *to_lonlat(edges)),
+        angle_edge=edge_angles(points, topology.cells_on_edge, at_edge["lon_edge"], at_edge["lat_edge"]),
         area_cell=area_cell,
         area_triangle=kites.sum(axis=1),
         kite_areas_on_vertex=kites,
@@ -45,10 +44,23 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     )
 
 
-def edge_angles(normal: Array, lon_edge: Array, lat_edge: Array) -> Array:
-    """Angles (n_edges,) of normals (n_edges, 3), counter-clockwise from east at the given position, in [-pi, pi]."""
-    east, north = east_north(lon_edge, lat_edge)
-    return np.arctan2(dot(normal, north), dot(normal, east))
+def _lengths(points: Array, ends: Index) -> Array:
+    """Lengths (n,) of the arcs between pairs of points, given by their numbers (n, 2)."""
+    return by_blocks(lambda pairs: arc_length(points[pairs[:, 0]], points[pairs[:, 1]]), ends)
+
+
+def edge_angles(points: Array, cells_on_edge: Index, lon_edge: Array, lat_edge: Array) -> Array:
+    """Angles (n_edges,) of the normals of edges, counter-clockwise from east at the given position, in [-pi, pi].
+
+    Normals are the differences of the generators `points` (n_cells, 3).
+    """
+
+    def angles(cells: Index, longitude: Array, latitude: Array) -> Array:
+        normal = points[cells[:, 1]] - points[cells[:, 0]]
+        east, north = east_north(longitude, latitude)
+        return np.arctan2(dot(normal, north), dot(normal, east))
+
+    return by_blocks(angles, cells_on_edge, lon_edge, lat_edge)
 
 
 def kite_areas(points: Array, edges: Array, vertices: Array, cells_on_vertex: Index, edges_on_vertex: Index) -> Array:
@@ -56,17 +68,19 @@ def kite_areas(points: Array, edges: Array, vertices: Array, cells_on_vertex: In
 
     Kite j runs counter-clockwise from the vertex to edge j, to cell j, to edge j + 1.
     """
-    kites = np.empty((len(vertices), 3))
-    for j in range(3):
-        cell = points[cells_on_vertex[:, j]]
-        before = edges[edges_on_vertex[:, j]]
-        after = edges[edges_on_vertex[:, (j + 1) % 3]]
-        kites[:, j] = triangle_area(cell, vertices, before) + triangle_area(cell, after, vertices)
-    return kites
+
+    def kites(cells: Index, sides: Index, corners: Array) -> Array:
+        areas = np.empty((len(corners), 3))
+        for j in range(3):
+            cell, before, after = points[cells[:, j]], edges[sides[:, j]], edges[sides[:, (j + 1) % 3]]
+            areas[:, j] = triangle_area(cell, corners, before) + triangle_area(cell, after, corners)
+        return areas
+
+    return by_blocks(kites, cells_on_vertex, edges_on_vertex, vertices)
 
 
 def _coordinates(place: str, points: Array) -> dict[str, Array]:
     """The five coordinate arrays of one kind of entity, by name."""
-    lon, lat = to_lonlat(points)
+    lon, lat = np.ascontiguousarray(by_blocks(lambda rows: np.stack(to_lonlat(rows), axis=1), points).T)
     x, y, z = np.ascontiguousarray(points.T)
     return {f"x_{place}": x, f"y_{place}": y, f"z_{place}": z, f"lat_{place}": lat, f"lon_{place}": lon}

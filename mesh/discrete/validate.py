@@ -5,8 +5,9 @@ tolerance. Errors name the first offending entities, counted from 0.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
-from mesh.arrays import Array
+from mesh.arrays import Array, Index, by_blocks
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.comparison import Difference, angle_difference, metric_differences
 from mesh.discrete.connectivity import validate_topology
@@ -113,29 +114,44 @@ def check_orientation(points: Array, topology: Topology) -> None:
 
     Raises `MeshError`.
     """
-    a, b, c = (points[topology.cells_on_vertex[:, k]] for k in range(3))
-    require(dot(a, np.cross(b - a, c - a)) > 0.0, "vertices", "cellsOnVertex does not run counter-clockwise")
-    inside = topology.on_ring
-    following = np.take_along_axis(
-        topology.cells_on_cell, (np.arange(topology.max_edges) + 1) % topology.n_edges_on_cell[:, None], axis=1
+
+    def triangles_turn(cells: Index) -> NDArray[np.bool_]:
+        a, b, c = (points[cells[:, k]] for k in range(3))
+        turns: NDArray[np.bool_] = dot(a, np.cross(b - a, c - a)) > 0.0
+        return turns
+
+    def rings_turn(centers: Array, cells: Index, counts: Index) -> NDArray[np.bool_]:
+        place = np.arange(cells.shape[1])
+        inside = place < counts[:, None]
+        following = np.take_along_axis(cells, (place + 1) % counts[:, None], axis=1)
+        center = centers[:, None, :]
+        spokes, following_spokes = (points[np.where(inside, ring, 0)] - center for ring in (cells, following))
+        return (dot(center, np.cross(spokes, following_spokes)) > 0.0) | ~inside
+
+    require(
+        by_blocks(triangles_turn, topology.cells_on_vertex), "vertices", "cellsOnVertex does not run counter-clockwise"
     )
-    center = points[:, None, :]
-    spokes = points[np.where(inside, topology.cells_on_cell, 0)] - center
-    following_spokes = points[np.where(inside, following, 0)] - center
-    turns = dot(center, np.cross(spokes, following_spokes))
-    require((turns > 0.0) | ~inside, "cells", "edgesOnCell does not run counter-clockwise")
+    require(
+        by_blocks(rings_turn, points, topology.cells_on_cell, topology.n_edges_on_cell),
+        "cells",
+        "edgesOnCell does not run counter-clockwise",
+    )
 
 
 def _check_delaunay(mesh: VoronoiMesh) -> None:
     """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
     points, vertices = mesh.cell_points / mesh.sphere_radius, mesh.vertex_points / mesh.sphere_radius
-    normal = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
-    along = vertices[mesh.vertices_on_edge[:, 1]] - vertices[mesh.vertices_on_edge[:, 0]]
-    tangent = np.cross(mesh.edge_points / mesh.sphere_radius, normal)
-    # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
-    slack = OUTSIDE_TOLERANCE * dot(normal, normal)
+
+    def along_tangent(middles: Array, cells: Index, ends: Index) -> NDArray[np.bool_]:
+        normal = points[cells[:, 1]] - points[cells[:, 0]]
+        along = vertices[ends[:, 1]] - vertices[ends[:, 0]]
+        # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
+        slack = OUTSIDE_TOLERANCE * dot(normal, normal)
+        right: NDArray[np.bool_] = dot(along, np.cross(middles / mesh.sphere_radius, normal)) >= -slack
+        return right
+
     require(
-        dot(along, tangent) >= -slack,
+        by_blocks(along_tangent, mesh.edge_points, mesh.cells_on_edge, mesh.vertices_on_edge),
         "edges",
         "the vertices of the edge lie against its tangent: the triangles are not the Delaunay triangulation of the "
         "cells, or vertices are out of place; build the mesh anew from its generators",
