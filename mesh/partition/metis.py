@@ -21,6 +21,7 @@ IMBALANCE = 0.03
 """By how much a block may be heavier than the mean: METIS's own default."""
 
 SPARE_CELLS = 1.5
+ROUND_OFF = 1e-6
 LEAST_CELLS = 4
 """Cells a block, on average, with which METIS leaves none empty."""
 
@@ -36,7 +37,8 @@ def metis_blocks(graph: CellGraph, n_blocks: int, weights: Index) -> Index:
     options.seed = SEED
     options.niter = REFINEMENTS
     options.contig = True
-    options.ufactor = math.ceil(1000.0 * (largest_weight(n_blocks, weights) * n_blocks / weights.sum() - 1.0))
+    excess = largest_weight(n_blocks, weights) * n_blocks / float(weights.sum()) - 1.0
+    options.ufactor = math.ceil(1000.0 * excess - ROUND_OFF)
     _, blocks = pymetis.part_graph(
         n_blocks,
         pymetis.CSRAdjacency(graph.starts.astype(index), graph.neighbours.astype(index)),

@@ -35,8 +35,8 @@ MOST_POLYGONS = 200_000
 """Larger meshes, whose cells are smaller than some dots, had better be drawn by pixels: less time and memory."""
 
 ROWS, COLUMNS = 900, 1800
-REACH = 0.6
-"""How far a cell reaches, of the largest distance to a neighbour; in a regular hexagon 1 / sqrt(3)."""
+REACH = 0.7
+"""How far a cell reaches, of the largest distance to a neighbour; in a regular hexagon 1 / sqrt(3), else a bit more."""
 
 
 def block_figure(where: VoronoiMesh | Array, graph: CellGraph, partition: Partition) -> Figure:

@@ -29,9 +29,10 @@ def print_partition(name: str, partition: Partition, measures: PartitionMeasures
     console = Console()
     console.print(table)
     if partition.mended_blocks:
-        console.print(f"METIS left {_listed(partition.mended_blocks)} in pieces or empty; mended")
+        console.print(f"METIS left {_listed(partition.mended_blocks)} in pieces or empty; mended", soft_wrap=True)
     if measures.broken:
-        console.print(f"{_listed(measures.broken)} in several pieces of the mesh, which is not connected itself")
+        lies = "lies" if len(measures.broken) == 1 else "lie"
+        console.print(f"{_listed(measures.broken)} {lies} on several islands of the mesh", soft_wrap=True)
     for path in paths:
         console.print(escape(str(path)), soft_wrap=True)
 
