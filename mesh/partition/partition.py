@@ -10,7 +10,7 @@ from mesh.arrays import Array, Index
 from mesh.errors import MeshError, require
 from mesh.partition.cell_graph import CellGraph, cell_graph, part_of, pieces
 from mesh.partition.mending import broken_blocks, mended
-from mesh.partition.metis import LEAST_CELLS, largest_weight, metis_blocks
+from mesh.partition.metis import largest_weight, metis_blocks
 from mesh.plain import plain_count
 from mesh.voronoi_mesh import Topology
 
@@ -78,11 +78,10 @@ def _divided(graph: CellGraph, n_blocks: int, weights: Index) -> Partition:
 
 
 def _divided_island(graph: CellGraph, n_blocks: int, weights: Index) -> Partition:
-    """Divide a connected graph into connected blocks: METIS makes as many as it can, halves of those the others."""
-    by_metis = max(1, min(n_blocks, graph.n_cells // LEAST_CELLS))
-    first = metis_blocks(graph, by_metis, weights)
+    """Divide a connected graph into connected blocks."""
+    first = metis_blocks(graph, n_blocks, weights)
     block_of_cell = mended(graph, first, n_blocks, weights, largest_weight(n_blocks, weights))
-    return Partition(block_of_cell, n_blocks, broken_blocks(graph, first, by_metis))
+    return Partition(block_of_cell, n_blocks, broken_blocks(graph, first, n_blocks))
 
 
 def shared_out(n_blocks: int, weights: Array | Index, most: Index) -> Index:

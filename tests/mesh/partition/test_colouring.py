@@ -33,3 +33,9 @@ def test_four_that_all_touch_have_four_colours() -> None:
         np.full(4, 3), np.array([[other for other in range(4) if other != node] for node in range(4)])
     )
     assert sorted(proper_colours(graph).tolist()) == [0, 1, 2, 3]
+
+
+def test_ends_of_a_chain_come_first() -> None:
+    """0, 2, 3, 1 in a row: in the order of their numbers a third colour would be needed."""
+    graph = graph_of_rings(np.array([1, 1, 2, 2]), np.array([[2, -1], [3, -1], [0, 3], [2, 1]]))
+    assert proper_colours(graph).max() == 1

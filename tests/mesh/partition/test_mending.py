@@ -62,6 +62,21 @@ def test_the_smaller_piece_goes_where_it_shares_most_edges(icosahedral_mesh: Vor
     assert np.all(given[patch] == 2)
 
 
+def test_a_block_takes_no_more_pieces_than_it_may(icosahedral_mesh: VoronoiMesh, belts: Index) -> None:
+    """Of two lone cells of the southernmost block in the northernmost, which may take one, the other goes on."""
+    graph = cell_graph(icosahedral_mesh)
+    southern = [np.count_nonzero(belts[graph.rows_of(np.array([cell]))[1]] == 2) for cell in range(graph.n_cells)]
+    rim = np.flatnonzero((belts == 3) & (np.array(southern) == 2))
+    lone = [rim[0], rim[np.argmin(icosahedral_mesh.cell_points[rim] @ icosahedral_mesh.cell_points[rim[0]])]]
+    broken = belts.copy()
+    broken[lone] = 0
+    np.testing.assert_array_equal(mended_mesh(icosahedral_mesh, broken, 4), belts)
+    weights = np.where(belts == 3, 2, 1)
+    most = float(weights[broken == 3].sum() + 2)
+    assert np.bincount(belts, weights)[2] + 2 <= most
+    assert sorted(mended(graph, broken, 4, weights, most)[lone].tolist()) == [2, 3]
+
+
 def test_pieces_within_pieces_are_mended(larger_mesh: VoronoiMesh) -> None:
     """Blocks thrown at random have pieces that touch only other pieces."""
     blocks = np.random.default_rng(3).integers(0, 12, larger_mesh.n_cells).astype(np.int32)
