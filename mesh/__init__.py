@@ -15,18 +15,21 @@ from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError, MeshWarning
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.pipeline import scvt_mesh
+from mesh.partition.partition import Partition, partition_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 
 __all__ = [
     "MeshError",
     "MeshWarning",
     "Operators",
+    "Partition",
     "Quality",
     "VoronoiMesh",
     "build_operators",
     "mesh_from_points",
     "mesh_quality",
     "normal_component",
+    "partition_mesh",
     "read_mesh",
     "scvt_mesh",
     "validate_mesh",

@@ -5,8 +5,17 @@ from typing import Any
 
 _PLACES = {
     "mesh": (
-        *("MeshError", "MeshWarning", "Operators", "Quality", "VoronoiMesh", "build_operators", "mesh_from_points"),
-        *("mesh_quality", "normal_component", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *("MeshError", "MeshWarning", "Operators", "Partition", "Quality", "VoronoiMesh", "build_operators"),
+        *(
+            "mesh_from_points",
+            "mesh_quality",
+            "normal_component",
+            "partition_mesh",
+            "read_mesh",
+            "scvt_mesh",
+            "validate_mesh",
+            "write_mesh",
+        ),
     ),
     "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
     "cases": (

@@ -12,12 +12,12 @@ from typing import TextIO, cast
 
 import typer
 
-from trisk.cli import bench, cases, compare, mesh, plot, quality, reference, run, spectra, study
+from trisk.cli import bench, cases, compare, mesh, partition, plot, quality, reference, run, spectra, study
 from trisk.report.streams import ErrorOutput
 
 COMMANDS = (
-    *(mesh.mesh, quality.quality, run.run, cases.cases, plot.plot, spectra.spectra, reference.reference),
-    *(compare.compare, bench.bench),
+    *(mesh.mesh, quality.quality, partition.partition, run.run, cases.cases, plot.plot, spectra.spectra),
+    *(reference.reference, compare.compare, bench.bench),
 )
 """In the order of the help."""
 

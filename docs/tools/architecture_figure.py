@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 ROOMS = {
-    "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"),
+    "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "partition", "generation", "files"),
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),
@@ -84,7 +84,7 @@ def architecture_figure() -> Figure:
     ):
         axes.text(3.6 * (WIDTH + 2 * GAP), 5.6 - 0.4 * number, text, color=colour, ha="center", fontsize=10)
     axes.set_xlim(-1.6, 4 * (WIDTH + 2.0 * GAP) + 1.1)
-    axes.set_ylim(-1.1, 6 * (HEIGHT + GAP) + 0.6)
+    axes.set_ylim(-1.1, (max(map(len, ROOMS.values())) - 1) * (HEIGHT + GAP) + 0.6)
     axes.set_aspect("equal")
     axes.axis("off")
     return figure

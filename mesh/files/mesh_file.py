@@ -38,8 +38,8 @@ class FileContent:
     single_precision: bool
 
 
-def read_content(file: netCDF4.Dataset) -> FileContent:
-    """All parts of a mesh that the file holds.
+def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> FileContent:
+    """All parts of a mesh that the file holds, or those of `names` alone.
 
     Indices count from 0, and what is no index is -1; angles are in radians. Raises `MeshError` where the mesh is on no
     sphere, or where a variable that the solver needs has other dimensions or no numbers.
@@ -48,7 +48,7 @@ def read_content(file: netCDF4.Dataset) -> FileContent:
         raise MeshError("the mesh is not on a sphere (on_a_sphere is not YES); only global meshes are supported")
     arrays = {}
     for variable in MESH_VARIABLES:
-        values = _read(file, variable)
+        values = _read(file, variable) if names is None or variable.name in names else None
         if values is not None:
             arrays[variable.name] = values
     _fill_rings(arrays)

@@ -18,3 +18,7 @@ def test_the_stations_are_rooms_and_none_comes_twice() -> None:
     texts = {text.get_text() for text in figure.axes[0].texts}
     assert {str(station) for station in range(1, 10)} <= texts
     assert {room for names in ROOMS.values() for room in names if room} <= texts
+    bottom, top = figure.axes[0].get_ylim()
+    assert all(
+        bottom < text.get_position()[1] < top - 0.5 * architecture_figure.HEIGHT for text in figure.axes[0].texts
+    )

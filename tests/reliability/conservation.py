@@ -26,6 +26,8 @@ SCHEMES: dict[str, dict[str, object]] = {
     "rk4": {},
     "rrk4": {"integrator": "rrk4"},
     "rrk4-apvm": {"integrator": "rrk4", "anticipation": 0.5},
+    "rrk4-consistent": {"integrator": "rrk4", "scheme": "consistent"},
+    "rfbrk3": {"integrator": "rfbrk3"},
 }
 
 
