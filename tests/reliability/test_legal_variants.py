@@ -10,6 +10,7 @@ from mesh import read_mesh, write_mesh
 from mesh.conventions import MESH_VARIABLES
 
 
+@pytest.mark.slow
 def test_legal_variants_give_the_same_run() -> None:
     found = outcomes(60, seed=1)
     assert not [words for words in found if words.startswith("WRONG")]

@@ -18,7 +18,7 @@ def mesh_file(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> Path:
     return tmp_path / "mesh.nc"
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
+@pytest.mark.parametrize("number", [pytest.param(signal.SIGTERM, marks=pytest.mark.slow), signal.SIGINT])
 def test_a_signal_leaves_a_checkpoint_and_resume_goes_on(
     trisk, mesh_file: Path, tmp_path: Path, number: signal.Signals
 ) -> None:

@@ -20,7 +20,9 @@ def mesh_file(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> Path:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="the system has no /dev/full")
-@pytest.mark.parametrize("command", [["quality"], ["quality", "--json"], ["--help"]])
+@pytest.mark.parametrize(
+    "command", [["quality"], pytest.param(["quality", "--json"], marks=pytest.mark.slow), ["--help"]]
+)
 def test_a_full_output(mesh_file: Path, command: list[str]) -> None:
     arguments = command if command == ["--help"] else [*command, str(mesh_file)]
     with open("/dev/full", "w") as full:

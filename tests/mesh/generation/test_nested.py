@@ -30,6 +30,7 @@ def test_generators_beyond_the_transition_stay(coarse: ScvtResult) -> None:
     assert len(result.points) > 1.5 * len(coarse.points)
 
 
+@pytest.mark.slow
 def test_number_of_cells_is_met(coarse: ScvtResult) -> None:
     assert len(nested_scvt(coarse.points, coarse.triangles, BOX, 1500, Limits(1e-3)).points) == 1500
 

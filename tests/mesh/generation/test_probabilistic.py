@@ -50,7 +50,7 @@ def test_steps_shrink_until_the_tolerance_is_reached() -> None:
 
 
 @pytest.mark.parametrize("method", ["probabilistic", "macqueen"])
-@pytest.mark.parametrize("density", ["uniform", "smooth-transition"])
+@pytest.mark.parametrize("density", ["uniform", pytest.param("smooth-transition", marks=pytest.mark.slow)])
 def test_default_tolerance_is_reached(method: str, density: str) -> None:
     mesh = scvt_mesh(100, density, "random", method, max_iterations=3000)
     assert mesh_quality(mesh).residual <= default_tolerance(density, method)
