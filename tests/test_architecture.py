@@ -11,7 +11,7 @@ import pytest
 ROOT = Path(__file__).parent.parent
 LAYERS = ["mesh", "swe", "cases", "postprocess", "trisk"]
 ROOMS = {
-    "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"],
+    "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "parts", "generation", "files"],
     "swe": ["", "parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
     "postprocess": ["", "runs", "reference", "compare", "figures", "studies"],

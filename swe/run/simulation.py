@@ -26,6 +26,7 @@ from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.integrators import STEPPINGS, Integrator, Stepping
 from swe.output.description import Moment, RunDescription, start_hash
 from swe.output.recorder import Recorder
+from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
 from swe.run.composition import (
     build_model,
@@ -98,6 +99,8 @@ class Simulation:
     resume
         Whether to resume the run in the directory from its last checkpoint, or from the start if it has none. The files
         are then those of an uninterrupted run, bit for bit.
+    processes
+        Those that share the run; `mesh` is then this one's part of the mesh (`mesh.parts`), and `output` must be None.
 
     Attributes
     ----------
@@ -134,6 +137,7 @@ class Simulation:
         fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
+        processes: Processes = ONE_PROCESS,
     ) -> None:
         options = Options(
             time_step,
@@ -157,10 +161,11 @@ class Simulation:
         require_keeping_energy(options.integrator, start.forcings)
         self.time, self.steps = 0.0, 0
         self._broken = False
-        self.configuration = options.with_time_step(options.time_step or default_time_step(start, options))
+        self.configuration = options.with_time_step(options.time_step or default_time_step(start, options, processes))
         self.checkpoint_interval = options.checkpoint_interval
 
-        self.model = build_model(start, self.configuration)
+        self.model = build_model(start, self.configuration, processes)
+        processes.exchange(self.state)
         self.initial_courant_number = self.courant_number = self._present_courant_number()
         self.initial_invariants = self.invariants
         require_finite_integrals(vars(self.initial_invariants), case.name)
@@ -209,9 +214,10 @@ class Simulation:
         terms = self.model.terms_after_steps
         if self.loops == "fused":
             terms = terms_over_tiles(self.mesh, terms)
+        processes = self.model.processes
         if self._stepping.relaxed:
-            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
-        return FixedSteps(followed_by(terms, self.method))
+            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms, processes)
+        return FixedSteps(followed_by(terms, self.method, processes))
 
     def _present_courant_number(self) -> float:
         return self.model.courant_number(self.state, self.configuration.time_step)
@@ -376,7 +382,7 @@ class Simulation:
 
     def _advance(self, event: float, most: int) -> None:
         """Take some steps towards `event`, seconds, without passing it, and no more than `most`."""
-        most = max(1, min(most, CELL_STEPS_PER_CALL // self.mesh.n_cells))
+        most = max(1, min(most, CELL_STEPS_PER_CALL // self.model.cells))
         before, start = self.state.copy() if self._start.kites_matter else None, self.time
         self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
         self.steps += taken
