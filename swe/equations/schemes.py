@@ -28,7 +28,8 @@ class Scheme(ABC):
     source
         Where it comes from.
     rings
-        How many rings of cells must stand round those of a process for its tendencies: see `swe.run.composition.rings_needed`.
+        How many rings of cells must stand round those of a process for its tendencies to be right: see
+        `swe.run.composition.rings_needed`.
     mesh
         The mesh as loops read it (`mesh.discrete.walls.closed_mesh`).
     """
@@ -61,7 +62,8 @@ class Scheme(ABC):
         """Write parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 of the energy between two states.
 
         The energy is that of state + c (after - state), less that of `state`, with potential energy measured from where
-        the `height` of the bottom (n_cells,), m, is zero. `measures` say which entities count. `folds` are the coarse and fine ones of the three sums.
+        the `height` of the bottom (n_cells,), m, is zero. `measures` say which entities count, and `folds` are the
+        coarse and fine ones of the three sums.
         """
         u, u_after = state.normal_velocity, after.normal_velocity
         energies = np.empty((3, self.mesh.n_cells))

@@ -39,7 +39,7 @@ def exact_words(rows: Array) -> tuple[Index, Index]:
     The words of several parts of a sum add up to those of the whole.
     """
     words, finite = _words(np.ascontiguousarray(rows).view(np.int64))
-    return words.sum(axis=0), finite.all(axis=0)
+    return words.sum(axis=0), finite.min(axis=0)
 
 
 def rounded(words: Index) -> float:

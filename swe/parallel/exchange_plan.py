@@ -76,7 +76,7 @@ Swap = Callable[[list[tuple[Index, Index]]], list[tuple[Index, Index]]]
 def plan_exchange(part: MeshPart, processes: int, swap: Swap) -> ExchangePlan:
     """The exchanges of `part` with those of other `processes`, each of which holds the block of its number."""
     received = messages_read(part)
-    nothing = np.zeros(0, np.int64)
+    nothing: Index = np.zeros(0, np.int64)
     wanted = [(nothing, nothing)] * processes
     for message in received:
         wanted[message.block] = part.cells[message.cells], part.edges[message.edges]
@@ -114,7 +114,8 @@ class Packing:
 def packing_of(messages: Messages, cell_rank: Index | None = None, edge_rank: Index | None = None) -> Packing:
     """The packing of `messages` for states in which the entities of the part have these ranks (None: their numbers)."""
     starts = starts_of(messages)
-    cells, cells_at, edges, edges_at = ([np.zeros(0, np.int64)] for _ in range(4))
+    nothing: Index = np.zeros(0, np.int64)
+    cells, cells_at, edges, edges_at = ([nothing] for _ in range(4))
     for message, start in zip(messages, starts, strict=False):
         middle = start + len(message.cells)
         cells.append(message.cells if cell_rank is None else cell_rank[message.cells])

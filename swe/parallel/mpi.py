@@ -49,7 +49,7 @@ class MpiProcesses:
     def exact_sums(self, rows: Array) -> list[float]:
         """See `Processes`; the words of all processes are added, and rounded once."""
         words, finite = exact_words(rows)
-        counts = np.column_stack([words, ~finite])
+        counts = np.column_stack([words, 1 - finite])
         self._comm.Allreduce(MPI.IN_PLACE, counts)
         if counts[:, -1].any():
             plain = self.sums(rows.sum(axis=1))

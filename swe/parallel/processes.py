@@ -14,7 +14,6 @@ from mesh.arrays import Array, Index
 from swe.parallel.exact_sum import exact_sums
 from swe.state import State
 
-
 Selection = slice | Index
 """Some of the entities of one kind, as arrays are indexed."""
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from mesh.discrete.walls import closed_mesh
 from swe.configuration import Configuration, Options
+from swe.constants import SECONDS_PER_DAY
 from swe.equations.anticipation import Anticipation
 from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
@@ -28,6 +29,9 @@ from swe.tiles.fused import FusedMethod, FusedRungeKutta
 SCHEMES: dict[str, type[Scheme]] = {scheme.name: scheme for scheme in (Ringler2010, Consistent)}
 """Schemes by the names that a user gives."""
 
+
+MOST_EVENTS = 1e9
+"""Most steps, snapshots or rows of a run; more of them would take years."""
 
 TERMS: dict[str, type[Term]] = {
     "anticipation": Anticipation,
@@ -69,6 +73,21 @@ def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> Non
             f"{integrator} keeps total energy, which the term {changing[0]} changes; take the integrator "
             f"{integrator.removeprefix('r')}"
         )
+
+
+def require_possible_counts(configuration: Configuration, checkpoint_interval: float, seconds: float) -> None:
+    """Raise `InputError` if a run over `seconds` would never come to its end."""
+    for what, interval in (
+        ("snapshot interval", configuration.snapshot_interval),
+        ("diagnostics interval", configuration.diagnostics_interval),
+        ("checkpoint interval", checkpoint_interval),
+        ("time step", configuration.time_step),
+    ):
+        if seconds > MOST_EVENTS * interval:
+            raise InputError(
+                f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
+                f"{seconds / interval:.1g}; give a longer one, or fewer days"
+            )
 
 
 def build_model(

@@ -34,6 +34,7 @@ from swe.run.composition import (
     fused_method,
     plain_method,
     require_keeping_energy,
+    require_possible_counts,
     warnings_before,
 )
 from swe.run.memory import return_freed_memory
@@ -51,9 +52,6 @@ from swe.tiles.fused import FusedMethod, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
-
-MOST_EVENTS = 1e9
-"""Most steps, snapshots or rows of a run; more of them would take years."""
 
 
 class Simulation:
@@ -260,7 +258,7 @@ class Simulation:
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {last_day:g}; give a "
                 "later day"
             )
-        self._require_possible_counts(end - self.time)
+        require_possible_counts(self.configuration, self.checkpoint_interval, end - self.time)
         if self.recorder is not None:
             self._choose_end(self.recorder, last_day)
         watch = Watch(self, self.time, callbacks, stop_when)
@@ -317,21 +315,6 @@ class Simulation:
             self.set_back_to_start()
         else:
             self.set_back_to(reached.state, reached.time, reached.steps)
-
-    def _require_possible_counts(self, seconds: float) -> None:
-        """Raise `InputError` if the run would never come to its end."""
-        configuration = self.configuration
-        for what, interval in (
-            ("snapshot interval", configuration.snapshot_interval),
-            ("diagnostics interval", configuration.diagnostics_interval),
-            ("checkpoint interval", self.checkpoint_interval),
-            ("time step", configuration.time_step),
-        ):
-            if seconds > MOST_EVENTS * interval:
-                raise InputError(
-                    f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
-                    f"{seconds / interval:.1g}; give a longer one, or fewer days"
-                )
 
     def last_shared_time(self, days: float) -> float:
         """The last time, seconds, up to which a run to `days` does the same as any longer one (`last_shared`)."""

@@ -28,13 +28,11 @@ class ForwardBackward:
     """Advances a state in place by FB-RK(3,2) (`FB_RK32`).
 
     The slopes of a stage are taken at the time of the state that the stage before it left. `processes` exchange values
-    in a state after each of its halves is new. `unsound` is the number of non-finite values and non-positive thicknesses
-    after `advance`.
+    in a state after each of its halves is new. `unsound` is the number of non-finite values and non-positive
+    thicknesses after `advance`.
     """
 
-    def __init__(
-        self, equations: Equations, state: State, processes: Processes = ONE_PROCESS
-    ) -> None:
+    def __init__(self, equations: Equations, state: State, processes: Processes = ONE_PROCESS) -> None:
         self.tendency = equations.tendency
         self.processes = processes
         self.unsound = 0

@@ -53,9 +53,7 @@ class Relaxation:
         model = self._model
 
         def along(coarse: Array, fine: Array, parts: Array) -> None:
-            model.scheme.energy_along(
-                state, after, self._height, model.gravity, model.measures, (coarse, fine), parts
-            )
+            model.scheme.energy_along(state, after, self._height, model.gravity, model.measures, (coarse, fine), parts)
 
         first, second, third = bounded_sums(along, self._folds, model.processes)
         return first, second, third
