@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 ROOMS = {
-    "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "generation", "files"),
+    "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "parts", "generation", "files"),
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),

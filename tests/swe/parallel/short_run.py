@@ -44,6 +44,6 @@ def hash_of(values: Array) -> str:
 
 
 def short_run(mesh: VoronoiMesh, options: dict[str, Any], processes: Processes = ONE_PROCESS) -> Simulation:
-    simulation = Simulation(mesh, Williamson5(), time_step=TIME_STEP, processes=processes, **options)
+    simulation = Simulation(mesh, Williamson5(), processes=processes, **{"time_step": TIME_STEP, **options})
     simulation.run(days=DAYS, progress=False)
     return simulation
