@@ -11,7 +11,18 @@ import pytest
 ROOT = Path(__file__).parent.parent
 LAYERS = ["mesh", "swe", "cases", "postprocess", "trisk"]
 ROOMS = {
-    "mesh": ["", "geometry", "triangulation", "density", "integrals", "discrete", "partition", "generation", "files"],
+    "mesh": [
+        "",
+        "geometry",
+        "triangulation",
+        "density",
+        "integrals",
+        "discrete",
+        "parts",
+        "partition",
+        "generation",
+        "files",
+    ],
     "swe": ["", "parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
     "postprocess": ["", "runs", "reference", "compare", "figures", "studies"],

@@ -9,7 +9,17 @@ from matplotlib.figure import Figure
 from matplotlib.patches import FancyBboxPatch
 
 ROOMS = {
-    "mesh": ("geometry", "triangulation", "density", "integrals", "discrete", "partition", "generation", "files"),
+    "mesh": (
+        "geometry",
+        "triangulation",
+        "density",
+        "integrals",
+        "discrete",
+        "parts",
+        "partition",
+        "generation",
+        "files",
+    ),
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),

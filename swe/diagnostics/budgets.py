@@ -18,6 +18,7 @@ from swe.diagnostics import integral_kernels
 from swe.equations.model import Diagnosis, ShallowWaterModel
 from swe.equations.terms import Term
 from swe.parallel.folding import folded_sums
+from swe.parallel.processes import anywhere
 from swe.state import State
 
 RATES = {
@@ -99,8 +100,11 @@ def measure_rates(
         rates["potential_enstrophy_rate_coriolis"] = coriolis.potential_enstrophy + transport.potential_enstrophy
     for term in model.terms:
         own = model.tendency_of(term, state, time)
-        by_source = _work_of_transport(model, own.thickness, bernoulli, q) if own.thickness.any() else _NONE
-        by_force = _work(model, flux, q, own.normal_velocity) if own.normal_velocity.any() else _NONE
+        any_source, any_force = (
+            anywhere(model.processes, int(values.any())) for values in (own.thickness, own.normal_velocity)
+        )
+        by_source = _work_of_transport(model, own.thickness, bernoulli, q) if any_source else _NONE
+        by_force = _work(model, flux, q, own.normal_velocity) if any_force else _NONE
         for integral in term.changes:
             source, force = getattr(by_source, integral), getattr(by_force, integral)
             rates[rate_name(integral, term.name)] = source + force
@@ -153,7 +157,7 @@ _NONE = _Work()
 
 def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acceleration: Array) -> _Work:
     """What an `acceleration` at edges does to the integrals; `flux` is the mass flux there."""
-    mesh = model.closed
+    mesh, measures = model.closed, model.measures
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
         integral_kernels.work_of(
@@ -161,9 +165,9 @@ def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acc
             flux,
             potential_vorticity,
             mesh.edges_on_vertex,
-            model.mesh.edge_signs_on_vertex,
+            measures.edge_signs_on_vertex,
             mesh.dc_edge,
-            mesh.dv_edge,
+            measures.dv_edge,
             coarse,
             fine,
             parts,
@@ -175,16 +179,16 @@ def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acc
 
 def _work_of_transport(model: ShallowWaterModel, thickness_tendency: Array, bernoulli: Array, q: Array) -> _Work:
     """What a tendency of thickness at cells does to the integrals."""
-    mesh = model.closed
+    mesh, measures = model.closed, model.measures
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
         integral_kernels.work_of_transport(
             thickness_tendency,
-            mesh.area_cell,
+            measures.area_cell,
             bernoulli,
             q,
             mesh.cells_on_vertex,
-            mesh.kite_areas_on_vertex,
+            measures.kite_areas_on_vertex,
             coarse,
             fine,
             parts,
@@ -198,7 +202,7 @@ def _work_of_forces(
     model: ShallowWaterModel, flux: Array, acceleration: Array, bernoulli: Array, q: Array
 ) -> tuple[_Work, _Work]:
     """What minus the gradient of the Bernoulli function, and then the rest of the acceleration, do to the integrals."""
-    mesh = model.closed
+    mesh, measures = model.closed, model.measures
 
     def work(coarse: Array, fine: Array, parts: Array) -> None:
         integral_kernels.work_of_forces(
@@ -208,9 +212,9 @@ def _work_of_forces(
             q,
             mesh.cells_on_edge,
             mesh.edges_on_vertex,
-            model.mesh.edge_signs_on_vertex,
+            measures.edge_signs_on_vertex,
             mesh.dc_edge,
-            mesh.dv_edge,
+            measures.dv_edge,
             coarse,
             fine,
             parts,

@@ -50,13 +50,13 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
     Kinetic energy is the sum of A_i h_i K_i, potential energy that of g A_i h_i (h_i/2 + b_i), potential enstrophy
     that of A_v h_v q_v^2/2, absolute vorticity that of A_v (f_v + zeta_v): Ringler et al. (2010), section 3.
     """
-    mesh, h, g = model.mesh, state.thickness, model.gravity
-    (mass,) = model.processes.exact_sums((mesh.area_cell * h)[None])
+    mesh, measures, h, g = model.mesh, model.measures, state.thickness, model.gravity
+    (mass,) = model.processes.exact_sums((measures.area_cell * h)[None])
     level = _level(model, mass)
     on_cells, on_vertices = np.empty((4, mesh.n_cells)), np.empty((2, mesh.n_vertices))
-    integral_kernels.energies(mesh.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
+    integral_kernels.energies(measures.area_cell, h, model.topography, diagnosis.kinetic_energy, level, on_cells)
     integral_kernels.vorticities(
-        mesh.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
+        measures.area_triangle, model.coriolis, diagnosis.relative_vorticity, diagnosis.potential_vorticity, on_vertices
     )
     kinetic, potential, available, of_depth = model.processes.exact_sums(on_cells)
     absolute_vorticity, enstrophy = model.processes.exact_sums(on_vertices)
@@ -74,7 +74,7 @@ def measure_invariants(model: ShallowWaterModel, state: State, diagnosis: Diagno
 
 def mean_level(model: ShallowWaterModel, state: State) -> float:
     """Height of the level surface over the same mass, m."""
-    (mass,) = model.processes.exact_sums((model.mesh.area_cell * state.thickness)[None])
+    (mass,) = model.processes.exact_sums((model.measures.area_cell * state.thickness)[None])
     return _level(model, mass)
 
 

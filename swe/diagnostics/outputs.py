@@ -66,7 +66,8 @@ class Evaluation:
     @property
     def largest_speed(self) -> float:
         """Largest speed sqrt(2 K) over all cells, m/s."""
-        largest = self.model.processes.largest(np.array([self.diagnosis.kinetic_energy.max()]))
+        processes = self.model.processes
+        largest = processes.largest(np.array([self.diagnosis.kinetic_energy[processes.own.cells].max()]))
         return float(np.sqrt(2.0 * largest[0]))
 
 

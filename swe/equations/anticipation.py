@@ -16,6 +16,7 @@ class Anticipation(Term):
     name = "anticipation"
     meaning = "by the anticipation of potential vorticity"
     changes = ("potential_enstrophy",)
+    rings = 3  # it takes gradients of the mean of q over cells beyond the neighbours
 
     def __init__(self, mesh: VoronoiMesh, seconds: float) -> None:
         self.seconds = seconds

@@ -27,6 +27,7 @@ class Consistent(Scheme):
 
     name = "consistent"
     source = "as Thuburn et al. (2009) and Ringler et al. (2010), with kinetic energy exact for uniform flow"
+    rings = 3  # the flux at the sides of a neighbour has a part from cells beyond, of all their sides
 
     def __init__(self, mesh: VoronoiMesh) -> None:
         super().__init__(mesh)

@@ -21,6 +21,7 @@ class BiharmonicDissipation(Term):
     name = "dissipation"
     meaning = "by biharmonic dissipation"
     changes = ("total_energy", "potential_enstrophy", "absolute_vorticity")
+    rings = 3  # the second Laplacian takes divergences of cells beyond the neighbours
     after_steps = True
 
     def __init__(self, mesh: VoronoiMesh, coefficient: float) -> None:

@@ -11,6 +11,7 @@ from mesh.arrays import Array, Index
 from mesh.discrete.walls import closed_mesh, wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
+from swe.equations.measures import measures_of
 from swe.equations.schemes import Ringler2010, Scheme
 from swe.equations.terms import Term
 from swe.errors import InputError
@@ -63,12 +64,13 @@ class ShallowWaterModel:
     ----------
     closed
         The mesh as the loops read it, see `mesh.discrete.walls.closed_mesh`.
+    measures
+        Sizes of the entities over which integrals are taken, see `swe.equations.measures`.
     area, bottom_volume, planetary_vorticity_magnitude
-        Area of the mesh, m2, integral of the topography, m3, and that of the magnitude of the Coriolis parameter,
-        m2/s.
-
-    entities
-        An upper bound on the number of cells, edges and vertices of the mesh together.
+        Area of the mesh of all processes, m2, integral of the topography, m3, and that of the magnitude of the Coriolis
+        parameter, m2/s.
+    cells, entities
+        Number of cells of all processes, and an upper bound on that of cells, edges and vertices together.
 
     Raises
     ------
@@ -105,11 +107,15 @@ class ShallowWaterModel:
         self.terms = tuple(terms)
         self.processes = processes
         self.closed = closed_mesh(mesh)
-        self.area, self.bottom_volume, cells = processes.exact_sums(
-            np.stack([mesh.area_cell, mesh.area_cell * topography, np.ones(mesh.n_cells)])
+        self.measures = measures_of(mesh, self.closed, processes.own)
+        areas, counted = self.measures.area_cell, np.zeros(mesh.n_cells)
+        counted[processes.own.cells] = 1.0
+        self.area, self.bottom_volume, cells = processes.exact_sums(np.stack([areas, areas * topography, counted]))
+        (self.planetary_vorticity_magnitude,) = processes.exact_sums(
+            (self.measures.area_triangle * np.abs(coriolis))[None]
         )
-        (self.planetary_vorticity_magnitude,) = processes.exact_sums((mesh.area_triangle * np.abs(coriolis))[None])
-        self.entities = ENTITIES_PER_CELL * int(cells)
+        self.cells = int(cells)
+        self.entities = ENTITIES_PER_CELL * self.cells
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
@@ -241,8 +247,7 @@ class ShallowWaterModel:
 
     def courant_number(self, state: State, time_step: float) -> float:
         """See `courant_number`."""
-        own = courant_number(self.closed, state, self.gravity, self.prescribed_wind, time_step)
-        return float(self.processes.largest(np.array([own]))[0])
+        return courant_number(self.closed, state, self.gravity, self.prescribed_wind, time_step, self.processes)
 
     def _update_vorticity(self, state: State) -> None:
         mesh = self.closed
@@ -268,18 +273,27 @@ class ShallowWaterModel:
         self.scheme.kinetic_energy(state.normal_velocity, self._kinetic_energy)
 
 
-def courant_number(mesh: VoronoiMesh, state: State, gravity: float, prescribed_wind: bool, time_step: float) -> float:
-    """Largest (sqrt(g h) + |u|) dt / d over all edges, d the distance between the cells.
+def courant_number(
+    mesh: VoronoiMesh,
+    state: State,
+    gravity: float,
+    prescribed_wind: bool,
+    time_step: float,
+    processes: Processes = ONE_PROCESS,
+) -> float:
+    """Largest (sqrt(g h) + |u|) dt / d over all edges of all `processes`, d the distance between the cells.
 
     The largest frequency of linear gravity waves on regular hexagons is sqrt(6 g h)/d; `swe.integrators` says how long
     a step each integrator stands. Under a prescribed wind, which has no waves, it is the largest |u| dt / d. `mesh`
     must have no gaps (`closed_mesh`).
     """
-    if not np.isfinite(state.normal_velocity).all():
-        return float("nan")
-    return time_step * kernels.largest_rate(
-        state.thickness, state.normal_velocity, gravity, not prescribed_wind, mesh.cells_on_edge, mesh.dc_edge
-    )
+    own = processes.own.edges
+    u, largest = state.normal_velocity[own], float("nan")
+    if np.isfinite(u).all():
+        largest = time_step * kernels.largest_rate(
+            state.thickness, u, gravity, not prescribed_wind, mesh.cells_on_edge[own], mesh.dc_edge[own]
+        )
+    return float(processes.largest(np.array([largest]))[0])
 
 
 def check_field(name: str, values: Array, size: int) -> None:

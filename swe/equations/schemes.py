@@ -6,7 +6,6 @@ companion, F_e = 1/(l_e d_e) dE/du_e. `docs/scheme.md` derives this.
 """
 
 from abc import ABC, abstractmethod
-from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -15,6 +14,7 @@ from mesh.arrays import Array
 from mesh.discrete.walls import closed_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import energy_along, kernels
+from swe.equations.measures import Measures
 from swe.state import State
 
 
@@ -27,12 +27,16 @@ class Scheme(ABC):
         What the user calls it.
     source
         Where it comes from.
+    rings
+        How many rings of cells must stand round those of a process for its tendencies to be right: see
+        `swe.run.composition.rings_needed`.
     mesh
         The mesh as loops read it (`mesh.discrete.walls.closed_mesh`).
     """
 
     name: ClassVar[str]
     source: ClassVar[str]
+    rings: ClassVar[int] = 2
 
     def __init__(self, mesh: VoronoiMesh) -> None:
         self.mesh = closed_mesh(mesh)
@@ -46,12 +50,20 @@ class Scheme(ABC):
         """Write F at edges (n_edges,), m2/s, from the thickness h at cells, m, and u; zero at walls."""
 
     def energy_along(
-        self, state: State, after: State, height: Array, gravity: float, folds: tuple[Array, Array], parts: Array
+        self,
+        state: State,
+        after: State,
+        height: Array,
+        gravity: float,
+        measures: Measures,
+        folds: tuple[Array, Array],
+        parts: Array,
     ) -> None:
         """Write parts (blocks, 3, 3) of the coefficients of c, c^2 and c^3 of the energy between two states.
 
         The energy is that of state + c (after - state), less that of `state`, with potential energy measured from where
-        the `height` of the bottom (n_cells,), m, is zero. `folds` are the coarse and fine ones of the three sums.
+        the `height` of the bottom (n_cells,), m, is zero. `measures` say which entities count, and `folds` are the
+        coarse and fine ones of the three sums.
         """
         u, u_after = state.normal_velocity, after.normal_velocity
         energies = np.empty((3, self.mesh.n_cells))
@@ -60,7 +72,7 @@ class Scheme(ABC):
         K, K_after, K_increment = energies
         h, h_after, (coarse, fine) = state.thickness, after.thickness, folds
         energy_along.sum_over_cells(
-            h, h_after, K, K_after, K_increment, height, gravity, self.mesh.area_cell, coarse, fine, parts
+            h, h_after, K, K_after, K_increment, height, gravity, measures.area_cell, coarse, fine, parts
         )
 
 
@@ -81,15 +93,18 @@ class Ringler2010(Scheme):
         """See `Scheme`."""
         kernels.thickness_flux(h, u, self.mesh.cells_on_edge, F)
 
-    @cached_property
-    def _half(self) -> Array:
-        return 0.5 * self.mesh.dv_edge * self.mesh.dc_edge
-
     def energy_along(
-        self, state: State, after: State, height: Array, gravity: float, folds: tuple[Array, Array], parts: Array
+        self,
+        state: State,
+        after: State,
+        height: Array,
+        gravity: float,
+        measures: Measures,
+        folds: tuple[Array, Array],
+        parts: Array,
     ) -> None:
         """See `Scheme`; faster, as the kinetic energy is a sum over edges."""
-        mesh, (coarse, fine) = self.mesh, folds
+        coarse, fine = folds
         energy_along.sum_over_edges(
             state.thickness,
             state.normal_velocity,
@@ -97,9 +112,9 @@ class Ringler2010(Scheme):
             after.normal_velocity,
             height,
             gravity,
-            mesh.area_cell,
-            self._half,
-            mesh.cells_on_edge,
+            measures.area_cell,
+            measures.half_edge_area,
+            self.mesh.cells_on_edge,
             coarse,
             fine,
             parts,

@@ -36,12 +36,16 @@ class Term:
         Those of `INTEGRALS` that the term changes; their rates are diagnosed.
     after_steps
         Whether the term acts after each step (`apply`) rather than in its stages.
+    rings
+        How many rings of cells must stand round those of a process for the term to be right at these; by default as
+        many as the bracket needs.
     """
 
     name: str
     meaning: str
     changes: tuple[str, ...]
     after_steps = False
+    rings = 2
 
     def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
         """Change the potential vorticity at edges (n_edges,) that the Coriolis flux carries, in place.

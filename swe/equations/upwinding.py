@@ -30,6 +30,7 @@ class Upwinding(Term):
     name = "upwinding"
     meaning = "by the upwinding of potential vorticity"
     changes = ("potential_enstrophy",)
+    rings = 3  # as for anticipation
 
     def __init__(self, mesh: VoronoiMesh, factor: float) -> None:
         self.factor = factor

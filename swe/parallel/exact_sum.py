@@ -29,14 +29,20 @@ def exact_sum(values: Array) -> float:
 
 def exact_sums(rows: Array) -> list[float]:
     """Sum of each of `rows` (k, n), see `exact_sum`."""
+    words, finite = exact_words(rows)
+    return [rounded(words[row]) if finite[row] else float(rows[row].sum()) for row in range(len(rows))]
+
+
+def exact_words(rows: Array) -> tuple[Index, Index]:
+    """Words (k, WORDS) that hold the sum of each of `rows` (k, n), and which (k,) have finite values only.
+
+    The words of several parts of a sum add up to those of the whole.
+    """
     words, finite = _words(np.ascontiguousarray(rows).view(np.int64))
-    return [
-        _rounded(words[:, row].sum(axis=0)) if finite[:, row].all() else float(rows[row].sum())
-        for row in range(len(rows))
-    ]
+    return words.sum(axis=0), finite.min(axis=0)
 
 
-def _rounded(words: Index) -> float:
+def rounded(words: Index) -> float:
     """The double nearest to the number held in words (WORDS,) with carries; infinite if that is too large."""
     total = 0
     for word in reversed(words.tolist()):

@@ -6,6 +6,7 @@ import numpy as np
 
 from mesh.discrete.walls import closed_mesh
 from swe.configuration import Configuration, Options
+from swe.constants import SECONDS_PER_DAY
 from swe.equations.anticipation import Anticipation
 from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
@@ -16,6 +17,7 @@ from swe.equations.terms import Term
 from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
+from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.run.case import CaseFields
 from swe.state import State
 from swe.stepping.forward_backward import ForwardBackward
@@ -28,10 +30,34 @@ SCHEMES: dict[str, type[Scheme]] = {scheme.name: scheme for scheme in (Ringler20
 """Schemes by the names that a user gives."""
 
 
-def default_time_step(start: CaseFields, options: Options) -> float:
+MOST_EVENTS = 1e9
+"""Most steps, snapshots or rows of a run; more of them would take years."""
+
+TERMS: dict[str, type[Term]] = {
+    "anticipation": Anticipation,
+    "upwinding": Upwinding,
+    "dissipation": BiharmonicDissipation,
+}
+"""Terms by the options that ask for them."""
+
+
+def rings_needed(options: Options) -> int:
+    """Rings of cells round those of a process on which its tendencies and diagnostics depend (`mesh.parts`).
+
+    Values are exchanged after each stage and each term, so what needs most rings decides. Tiles read the cells round
+    the vertices of the neighbours of their own, two rings (`swe.tiles.cutting`); where they read all sides of the cells
+    of the second one, a third must stand behind these.
+    """
+    asked = [term.rings for name, term in TERMS.items() if getattr(options, name) > 0.0]
+    return max(SCHEMES[options.scheme].rings, *asked, 0)
+
+
+def default_time_step(start: CaseFields, options: Options, processes: Processes = ONE_PROCESS) -> float:
     """Largest step, s, up to the integrator's default Courant number that divides the shorter output interval."""
     case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
-    per_second = courant_number(closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0)
+    per_second = courant_number(
+        closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0, processes
+    )
     if not np.isfinite(per_second):
         raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
     courant = STEPPINGS[options.integrator].default_courant_number
@@ -49,7 +75,24 @@ def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> Non
         )
 
 
-def build_model(start: CaseFields, configuration: Configuration) -> ShallowWaterModel:
+def require_possible_counts(configuration: Configuration, checkpoint_interval: float, seconds: float) -> None:
+    """Raise `InputError` if a run over `seconds` would never come to its end."""
+    for what, interval in (
+        ("snapshot interval", configuration.snapshot_interval),
+        ("diagnostics interval", configuration.diagnostics_interval),
+        ("checkpoint interval", checkpoint_interval),
+        ("time step", configuration.time_step),
+    ):
+        if seconds > MOST_EVENTS * interval:
+            raise InputError(
+                f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
+                f"{seconds / interval:.1g}; give a longer one, or fewer days"
+            )
+
+
+def build_model(
+    start: CaseFields, configuration: Configuration, processes: Processes = ONE_PROCESS
+) -> ShallowWaterModel:
     """The equations of a case with the terms that the options and the case ask for."""
     terms: list[Term] = []
     if configuration.anticipation > 0.0:
@@ -68,15 +111,15 @@ def build_model(start: CaseFields, configuration: Configuration) -> ShallowWater
         case.prescribed_wind,
         SCHEMES[configuration.scheme],
         terms,
+        processes,
     )
 
 
 def plain_method(model: ShallowWaterModel, state: State, integrator: Integrator) -> RungeKutta | ForwardBackward:
     """The method of the integrator in plain loops, for any model."""
-    exchange = model.processes.exchange
     if STEPPINGS[integrator].forward_backward:
-        return ForwardBackward(model, state, exchange)
-    return RungeKutta(model.tendency, state, exchange=exchange)
+        return ForwardBackward(model, state, model.processes)
+    return RungeKutta(model.tendency, state, processes=model.processes)
 
 
 def fused_method(model: ShallowWaterModel, integrator: Integrator) -> FusedMethod:

@@ -26,6 +26,7 @@ from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.integrators import STEPPINGS, Integrator, Stepping
 from swe.output.description import Moment, RunDescription, start_hash
 from swe.output.recorder import Recorder
+from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
 from swe.run.composition import (
     build_model,
@@ -33,6 +34,7 @@ from swe.run.composition import (
     fused_method,
     plain_method,
     require_keeping_energy,
+    require_possible_counts,
     warnings_before,
 )
 from swe.run.memory import return_freed_memory
@@ -50,9 +52,6 @@ from swe.tiles.fused import FusedMethod, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
 """Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
-
-MOST_EVENTS = 1e9
-"""Most steps, snapshots or rows of a run; more of them would take years."""
 
 
 class Simulation:
@@ -98,6 +97,8 @@ class Simulation:
     resume
         Whether to resume the run in the directory from its last checkpoint, or from the start if it has none. The files
         are then those of an uninterrupted run, bit for bit.
+    processes
+        Those that share the run; `mesh` is then this one's part of the mesh (`mesh.parts`), and `output` must be None.
 
     Attributes
     ----------
@@ -134,6 +135,7 @@ class Simulation:
         fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
+        processes: Processes = ONE_PROCESS,
     ) -> None:
         options = Options(
             time_step,
@@ -157,10 +159,11 @@ class Simulation:
         require_keeping_energy(options.integrator, start.forcings)
         self.time, self.steps = 0.0, 0
         self._broken = False
-        self.configuration = options.with_time_step(options.time_step or default_time_step(start, options))
+        self.configuration = options.with_time_step(options.time_step or default_time_step(start, options, processes))
         self.checkpoint_interval = options.checkpoint_interval
 
-        self.model = build_model(start, self.configuration)
+        self.model = build_model(start, self.configuration, processes)
+        processes.exchange(self.state)
         self.initial_courant_number = self.courant_number = self._present_courant_number()
         self.initial_invariants = self.invariants
         require_finite_integrals(vars(self.initial_invariants), case.name)
@@ -209,9 +212,10 @@ class Simulation:
         terms = self.model.terms_after_steps
         if self.loops == "fused":
             terms = terms_over_tiles(self.mesh, terms)
+        processes = self.model.processes
         if self._stepping.relaxed:
-            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms)
-        return FixedSteps(followed_by(terms, self.method))
+            return RelaxedSteps(self.method, Relaxation(self.model, self.state), self.state, terms, processes)
+        return FixedSteps(followed_by(terms, self.method, processes))
 
     def _present_courant_number(self) -> float:
         return self.model.courant_number(self.state, self.configuration.time_step)
@@ -254,7 +258,7 @@ class Simulation:
                 f"the run stands at day {self.time / SECONDS_PER_DAY:g} and cannot go to day {last_day:g}; give a "
                 "later day"
             )
-        self._require_possible_counts(end - self.time)
+        require_possible_counts(self.configuration, self.checkpoint_interval, end - self.time)
         if self.recorder is not None:
             self._choose_end(self.recorder, last_day)
         watch = Watch(self, self.time, callbacks, stop_when)
@@ -312,21 +316,6 @@ class Simulation:
         else:
             self.set_back_to(reached.state, reached.time, reached.steps)
 
-    def _require_possible_counts(self, seconds: float) -> None:
-        """Raise `InputError` if the run would never come to its end."""
-        configuration = self.configuration
-        for what, interval in (
-            ("snapshot interval", configuration.snapshot_interval),
-            ("diagnostics interval", configuration.diagnostics_interval),
-            ("checkpoint interval", self.checkpoint_interval),
-            ("time step", configuration.time_step),
-        ):
-            if seconds > MOST_EVENTS * interval:
-                raise InputError(
-                    f"the {what} is {interval:g} s, of which {seconds / SECONDS_PER_DAY:g} days would have "
-                    f"{seconds / interval:.1g}; give a longer one, or fewer days"
-                )
-
     def last_shared_time(self, days: float) -> float:
         """The last time, seconds, up to which a run to `days` does the same as any longer one (`last_shared`)."""
         return last_shared(self._schedules(days * SECONDS_PER_DAY))
@@ -376,7 +365,7 @@ class Simulation:
 
     def _advance(self, event: float, most: int) -> None:
         """Take some steps towards `event`, seconds, without passing it, and no more than `most`."""
-        most = max(1, min(most, CELL_STEPS_PER_CALL // self.mesh.n_cells))
+        most = max(1, min(most, CELL_STEPS_PER_CALL // self.model.cells))
         before, start = self.state.copy() if self._start.kites_matter else None, self.time
         self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
         self.steps += taken

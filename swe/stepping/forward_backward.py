@@ -1,6 +1,5 @@
 """Forward-backward Runge-Kutta: in every stage thickness goes first, and velocity follows with the new thickness."""
 
-from collections.abc import Callable
 from typing import Protocol
 
 import numpy as np
@@ -8,7 +7,7 @@ import numpy as np
 from mesh.arrays import Array
 from swe.equations.kernels import add_scaled, blend, count_unsound
 from swe.integrators import FB_RK32, ForwardBackwardStage
-from swe.parallel.processes import ONE_PROCESS
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 from swe.state import State
 
 
@@ -28,16 +27,14 @@ class Equations(Protocol):
 class ForwardBackward:
     """Advances a state in place by FB-RK(3,2) (`FB_RK32`).
 
-    The slopes of a stage are taken at the time of the state that the stage before it left. `exchange` fetches the
-    values of other processes into a state after each of its halves is new. `unsound` is the number of non-finite values
-    and non-positive thicknesses after `advance`.
+    The slopes of a stage are taken at the time of the state that the stage before it left. `processes` exchange values
+    in a state after each of its halves is new. `unsound` is the number of non-finite values and non-positive
+    thicknesses after `advance`.
     """
 
-    def __init__(
-        self, equations: Equations, state: State, exchange: Callable[[State], None] = ONE_PROCESS.exchange
-    ) -> None:
+    def __init__(self, equations: Equations, state: State, processes: Processes = ONE_PROCESS) -> None:
         self.tendency = equations.tendency
-        self.exchange = exchange
+        self.processes = processes
         self.unsound = 0
         self._equations = equations
         # The last stage no longer needs the state that the first one left, and writes over it.
@@ -50,7 +47,7 @@ class ForwardBackward:
         """Take up to `steps` steps from `time`, s, fewer if one leaves `unsound` values; return their number."""
         for taken in range(1, steps + 1):
             self.step(state, time_step, time + (taken - 1) * time_step)
-            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            self.unsound = anywhere(self.processes, count_unsound(state.thickness, state.normal_velocity))
             if self.unsound:
                 return taken
         return steps
@@ -71,8 +68,8 @@ class ForwardBackward:
         factor, slope, blended = stage.fraction * time_step, self._slope, self._blend
         self._equations.thickness_tendency(at, slope.thickness, time)
         add_scaled(start.thickness, factor, slope.thickness, result.thickness)
-        self.exchange(State(result.thickness, at.normal_velocity))
+        self.processes.exchange(State(result.thickness, at.normal_velocity))
         blend(stage.new, result.thickness, stage.last, at.thickness, stage.start, start.thickness, blended)
         self._equations.velocity_tendency(State(blended, at.normal_velocity), slope.normal_velocity, time)
         add_scaled(start.normal_velocity, factor, slope.normal_velocity, result.normal_velocity)
-        self.exchange(result)
+        self.processes.exchange(result)

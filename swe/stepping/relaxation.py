@@ -44,8 +44,8 @@ class Relaxation:
         """A scale of energy, m5/s2: kinetic energy, plus potential energy with all terms taken as positive."""
         model, h = self._model, state.thickness
         terms = np.empty((2, h.size))
-        terms[0] = model.mesh.area_cell * h * model.diagnose(state).kinetic_energy
-        terms[1] = model.gravity * model.mesh.area_cell * h * (h + np.abs(self._height))
+        terms[0] = model.measures.area_cell * h * model.diagnose(state).kinetic_energy
+        terms[1] = model.gravity * model.measures.area_cell * h * (h + np.abs(self._height))
         return sum(model.processes.exact_sums(terms))
 
     def coefficients(self, state: State, after: State) -> tuple[float, float, float]:
@@ -53,7 +53,7 @@ class Relaxation:
         model = self._model
 
         def along(coarse: Array, fine: Array, parts: Array) -> None:
-            model.scheme.energy_along(state, after, self._height, model.gravity, (coarse, fine), parts)
+            model.scheme.energy_along(state, after, self._height, model.gravity, model.measures, (coarse, fine), parts)
 
         first, second, third = bounded_sums(along, self._folds, model.processes)
         return first, second, third

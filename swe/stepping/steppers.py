@@ -5,6 +5,7 @@ from typing import Protocol
 
 from swe.equations.kernels import count_unsound, move_along
 from swe.equations.terms import Term
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 from swe.state import State
 from swe.stepping.relaxation import Relaxation
 from swe.stepping.schedule import equal_step, steps_towards
@@ -59,29 +60,42 @@ class FixedSteps:
         return times[taken - 1], taken
 
 
+class AfterSteps:
+    """The `terms` that act after steps; `processes` exchange the values that these change."""
+
+    def __init__(self, terms: Sequence[Term], processes: Processes) -> None:
+        self._terms, self._processes = terms, processes
+
+    def apply(self, state: State, time_step: float, unsound: int) -> int:
+        """Change `state` after a step that left it with `unsound` values; return how many it has now."""
+        for term in self._terms:
+            term.apply(state, time_step)
+            self._processes.exchange(state)
+            unsound = count_unsound(state.thickness, state.normal_velocity)
+        return anywhere(self._processes, unsound)
+
+
 class SplitMethod:
     """A method whose every step is followed by `terms`."""
 
-    def __init__(self, method: Method, terms: Sequence[Term]) -> None:
+    def __init__(self, method: Method, terms: Sequence[Term], processes: Processes = ONE_PROCESS) -> None:
         self._method = method
-        self._terms = terms
+        self._after = AfterSteps(terms, processes)
         self.unsound = 0
 
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
         """See `Method`."""
         for taken in range(1, steps + 1):
             self._method.advance(state, time_step, 1, time + (taken - 1) * time_step)
-            for term in self._terms:
-                term.apply(state, time_step)
-            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            self.unsound = self._after.apply(state, time_step, self._method.unsound)
             if self.unsound:
                 return taken
         return steps
 
 
-def followed_by(terms: Sequence[Term], method: Method) -> Method:
+def followed_by(terms: Sequence[Term], method: Method, processes: Processes = ONE_PROCESS) -> Method:
     """The method itself if there are no `terms` that act after steps."""
-    return SplitMethod(method, terms) if terms else method
+    return SplitMethod(method, terms, processes) if terms else method
 
 
 class RelaxedSteps:
@@ -90,10 +104,17 @@ class RelaxedSteps:
     The time left to an event is divided into equal steps, afresh after each. The `terms` act after each step.
     """
 
-    def __init__(self, method: Method, relaxation: Relaxation, state: State, terms: Sequence[Term] = ()) -> None:
+    def __init__(
+        self,
+        method: Method,
+        relaxation: Relaxation,
+        state: State,
+        terms: Sequence[Term] = (),
+        processes: Processes = ONE_PROCESS,
+    ) -> None:
         self._method = method
         self._relaxation = relaxation
-        self._terms = terms
+        self._terms = AfterSteps(terms, processes)
         self._after = state.empty_like()
         self.unsound = 0
 
@@ -113,12 +134,10 @@ class RelaxedSteps:
         if step == event - time:
             factor, step = self._land(state, factor, step, time)
             following = event
-        self.unsound = move_along(
+        unsound = move_along(
             state.thickness, state.normal_velocity, self._after.thickness, self._after.normal_velocity, factor
         )
-        for term in self._terms:
-            term.apply(state, factor * step)
-            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+        self.unsound = self._terms.apply(state, factor * step, unsound)
         return following
 
     def _try(self, state: State, step: float, time: float) -> float:

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from swe.equations.kernels import add_scaled, count_unsound
-from swe.parallel.processes import ONE_PROCESS
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 from swe.state import State
 
 Tendency = Callable[[State, State, float], None]
@@ -34,7 +34,7 @@ RK4 = ButcherTableau(
 class RungeKutta:
     """Advances a state in place with an explicit method; the slopes are allocated once.
 
-    `exchange` fetches the values of other processes into a state before its slope is taken.
+    `processes` exchange values in a state before its slope is taken.
     `unsound` is the number of non-finite values and non-positive thicknesses after `advance`.
     """
 
@@ -43,10 +43,10 @@ class RungeKutta:
         tendency: Tendency,
         state: State,
         tableau: ButcherTableau = RK4,
-        exchange: Callable[[State], None] = ONE_PROCESS.exchange,
+        processes: Processes = ONE_PROCESS,
     ) -> None:
         self.tendency = tendency
-        self.exchange = exchange
+        self.processes = processes
         self.tableau = tableau
         self.unsound = 0
         self._stage = state.empty_like()
@@ -56,7 +56,7 @@ class RungeKutta:
         """Take up to `steps` steps from `time`, s, fewer if one leaves `unsound` values; return their number."""
         for taken in range(1, steps + 1):
             self.step(state, time_step, time + (taken - 1) * time_step)
-            self.unsound = count_unsound(state.thickness, state.normal_velocity)
+            self.unsound = anywhere(self.processes, count_unsound(state.thickness, state.normal_velocity))
             if self.unsound:
                 return taken
         return steps
@@ -67,10 +67,10 @@ class RungeKutta:
         for coefficients, node, slope in zip(tableau.stages, tableau.nodes, self._slopes, strict=True):
             stage = self._combine(state, time_step, coefficients, self._stage)
             if stage is not state:
-                self.exchange(stage)
+                self.processes.exchange(stage)
             self.tendency(stage, slope, time + node * time_step)
         self._combine(state, time_step, tableau.weights, state)
-        self.exchange(state)
+        self.processes.exchange(state)
 
     def _combine(self, state: State, time_step: float, coefficients: tuple[float, ...], result: State) -> State:
         """Write state + dt sum_i c_i k_i into `result`; return `state` itself if all c_i vanish."""

@@ -56,7 +56,7 @@ class FusedForwardBackward(FusedMethod):
             kernels.one_pass(*fixed, moving, more, True, (h1, h2, h), third, (u, u2, u1), c3, h1, c1, following, end)
             self._exchange((following if more else h1, u1))
             h, h1, following, u, u1 = h1, following, h, u1, u
-            if self._any_unsound():
+            if self._any_unsound(h, u):
                 break
         for values, target in ((h, y[0]), (u, y[1])):
             if values is not target:

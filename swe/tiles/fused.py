@@ -4,14 +4,15 @@ import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
-from mesh.triangulation.ordering import inverse_order
 from swe.equations.anticipation import Anticipation
 from swe.equations.consistent import Consistent
+from swe.equations.kernels import count_unsound
 from swe.equations.model import ShallowWaterModel
 from swe.equations.schemes import Ringler2010
 from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
+from swe.parallel.processes import anywhere
 from swe.state import State
 from swe.tiles import tile_kernels
 from swe.tiles.cutting import Tiles, build_tiles
@@ -58,6 +59,7 @@ class FusedMethod:
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(stages)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
+        self._fetch = model.processes.exchange_in(self.tiles.cell_order, self.tiles.edge_order)
 
     @property
     def unsound(self) -> int:
@@ -88,20 +90,19 @@ class FusedMethod:
         """The same, with an exchange of values between processes after each pass."""
         raise NotImplementedError
 
-    def _any_unsound(self) -> bool:
-        """Whether any process found unsound values."""
-        return bool(self.model.processes.largest(np.array([float(self.unsound)]))[0] > 0.0)
-
     def _exchange(self, pair: tuple[Array, Array]) -> None:
         """Fetch the values of other processes into a pair of thickness and velocity in the order of the tiles."""
-        orders = (self.tiles.cell_order, self.tiles.edge_order)
-        state = State(
-            *(_in_order(v, None if o is None else inverse_order(o)) for v, o in zip(pair, orders, strict=True))
-        )
-        self.model.processes.exchange(state)
-        for values, order, arrived in zip(pair, orders, (state.thickness, state.normal_velocity), strict=True):
-            if arrived is not values:
-                values[:] = _in_order(arrived, order)
+        self._fetch(State(*pair))
+
+    def _any_unsound(self, h: Array, u: Array) -> bool:
+        """Whether any process finds unsound values in a state that has been exchanged.
+
+        Only then are they counted again, as tiles also make values that another process computes, and make them wrong.
+        """
+        count = count_unsound(h, u) if self._unsound.any() else 0
+        self._unsound[:] = 0
+        self._unsound[0] = anywhere(self.model.processes, count)
+        return bool(self._unsound[0] > 0)
 
     def tendency(self, state: State, result: State, time: float = 0.0) -> None:
         """Write the time derivative of `state` into `result`, as the stages of a step use it at any `time`."""
@@ -181,7 +182,7 @@ class FusedRungeKutta(FusedMethod):
             for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
                 tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
                 self._exchange(result)
-            if self._any_unsound():
+            if self._any_unsound(*y):
                 return taken
         return steps
 

@@ -29,6 +29,16 @@ inlined = numba.njit(**part_options)
 compiled = numba.njit(parallel=True, cache=True, **options)
 
 
+@numba.njit(**{**part_options, "fastmath": False})
+def rounded_product(x: float, y: float) -> float:
+    """The product of x and y, rounded before it is added to another one.
+
+    In the sum of two products the compiler is free to fuse either with the addition, and chooses differently from one
+    compilation to the next; this leaves it no choice.
+    """
+    return x * y
+
+
 @intrinsic
 def _prefer_widest_vectors(_typing_context: Any) -> Any:
     """Let the loop that calls this use vectors of 512 bits if the processor has them.

@@ -15,7 +15,7 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from swe.equations.kernels import STILL
-from swe.tiles.layout import LANES, RING, Arrays, inlined
+from swe.tiles.layout import LANES, RING, Arrays, inlined, rounded_product
 
 
 @inlined
@@ -74,7 +74,7 @@ def _upwind(factor: float | None, a: float, b: float) -> float:
     """The part of 2 T_e that is upwinding, if there is any."""
     if factor is None:
         return 0.0
-    return float(factor / np.sqrt(a * a + b * b + STILL))
+    return float(factor / np.sqrt(a * a + rounded_product(b, b) + STILL))
 
 
 @inlined
@@ -99,7 +99,7 @@ def _change_at_sides(
     for j in range(sides):
         r = start + j * stride
         a, b = ratio[r] * U_at_sides[r], past[r] - past[opposite[r]]
-        fall = a * (q_cell[cells[r]] - q_cell[i]) + b * along[r]
+        fall = a * (q_cell[cells[r]] - q_cell[i]) + rounded_product(b, along[r])
         at_sides[r] -= fall * (_anticipated(seconds, inverse_measure[r]) + _upwind(factor, a, b))
 
 

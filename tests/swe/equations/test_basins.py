@@ -7,6 +7,7 @@ import pytest
 from cases import Williamson5
 from mesh import VoronoiMesh, build_operators
 from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.parts.cutting import without_cells
 from swe import Simulation
 from swe.diagnostics.budgets import measure_rates
 from swe.equations.anticipation import Anticipation
@@ -19,7 +20,7 @@ from swe.integrators import Integrator
 from swe.run.composition import fused_method, plain_method
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
-from tests.cut_mesh import without_cap, without_cells
+from tests.cut_mesh import without_cap
 from tests.swe.random_model import RADIUS, random_model
 
 

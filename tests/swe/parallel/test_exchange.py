@@ -7,21 +7,20 @@ import numpy as np
 import pytest
 
 from mesh import VoronoiMesh, mesh_from_points
-from mesh.arrays import Array
+from mesh.arrays import Array, Index
+from mesh.parts.mesh_part import MeshPart, cut_part
+from mesh.triangulation.ordering import inverse_order
 from swe import ShallowWaterModel, State
+from swe.equations.schemes import Ringler2010
 from swe.integrators import Integrator
-from swe.parallel.exact_sum import exact_sums
 from swe.parallel.processes import OneProcess
 from swe.run.composition import fused_method, plain_method
 from swe.stepping.steppers import Method
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
-from tests.cut_mesh import FILL, without_cells
 
 RADIUS = 6.4e6
 STEPS = 3
-RINGS = 2
-"""Rings of cells round the own ones on which the tendency of these depends."""
 
 
 class Turns:
@@ -37,13 +36,28 @@ class Turns:
         self.turn.acquire()
 
 
-class Part:
-    """One of two processes: `own` cells and edges are computed here, what else its mesh has by the other."""
+class Meeting(OneProcess):
+    """A process that is not alone; all of an exchange is in `exchange`, whatever the order of the values."""
 
     alone = False
 
-    def __init__(self, whole: State, cells: Array, edges: Array, own: tuple[Array, Array], turns: Turns) -> None:
-        self._whole, self._cells, self._edges, self._own, self._turns = whole, cells, edges, own, turns
+    def exchange_in(self, cell_order: Index | None, edge_order: Index | None) -> Callable[[State], None]:
+        def exchange(state: State) -> None:
+            pair = (state.thickness, cell_order), (state.normal_velocity, edge_order)
+            in_order = State(*(v.copy() if o is None else v[inverse_order(o)] for v, o in pair))
+            self.exchange(in_order)
+            for (values, order), arrived in zip(pair, (in_order.thickness, in_order.normal_velocity), strict=True):
+                values[:] = arrived if order is None else arrived[order]
+
+        return exchange
+
+
+class Part(Meeting):
+    """One of two processes: `own` cells and edges are computed here, what else its mesh has by the other."""
+
+    def __init__(self, whole: State, part: MeshPart, turns: Turns) -> None:
+        self._whole, self._cells, self._edges, self._turns = whole, part.cells, part.edges, turns
+        self._own = part.own_cells, part.own_edges
         self.exchanges = 0
 
     def exchange(self, state: State) -> None:
@@ -56,29 +70,12 @@ class Part:
         self._turns.meet()
         self.exchanges += 1
 
-    def exact_sums(self, rows: Array) -> list[float]:
-        return exact_sums(rows)
-
-    def sums(self, values: Array) -> Array:
-        return values
-
-    def largest(self, values: Array) -> Array:
-        return values
-
 
 def setting(mesh: VoronoiMesh) -> tuple[Array, Array, State]:
     random = np.random.default_rng(5)
     topography, coriolis = random.uniform(0.0, 500.0, mesh.n_cells), random.uniform(-1e-4, 1e-4, mesh.n_vertices)
     state = State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
     return topography, coriolis, state
-
-
-def widened(mesh: VoronoiMesh, cells: Array) -> Array:
-    """The marked cells and `RINGS` rings round them."""
-    for _ in range(RINGS):
-        beside = np.where(mesh.on_ring, mesh.cells_on_cell, 0)
-        cells = cells | (cells[beside] & mesh.on_ring).any(axis=1)
-    return cells
 
 
 def fused(model: ShallowWaterModel, _: State, integrator: Integrator) -> Method:
@@ -108,22 +105,19 @@ def test_two_parts_give_the_bits_of_the_whole(
     expected = start.copy()
     method(ShallowWaterModel(mesh, topography, coriolis, 9.8), expected).advance(expected, 20.0, STEPS)
     shared, turns = start.copy(), Turns()
-    east = mesh.lon_cell < np.pi
-    first_cell_in_east = east[mesh.cells_on_edge[:, 0]]
+    blocks = (mesh.lon_cell < np.pi).astype(int)
     parts, failures = [], []
 
-    def run(mine: Array, my_edges: Array) -> None:
+    def run(block: int) -> None:
         with turns.turn:
             try:
-                kept = widened(mesh, mine)
-                part = without_cells(mesh, ~kept)
-                cells = np.flatnonzero(kept)
-                edges = np.flatnonzero(kept[mesh.cells_on_edge].any(axis=1))
-                vertices = np.flatnonzero(kept[mesh.cells_on_vertex].any(axis=1))
-                process = Part(shared, cells, edges, (mine[cells], my_edges[edges]), turns)
-                state = State(start.thickness[cells], start.normal_velocity[edges])
-                model = ShallowWaterModel(part, topography[cells], coriolis[vertices], 9.8, processes=process)
-                assert (part.cells_on_edge == FILL).any()
+                part = cut_part(mesh, blocks, block, Ringler2010.rings)
+                process = Part(shared, part, turns)
+                state = State(start.thickness[part.cells], start.normal_velocity[part.edges])
+                model = ShallowWaterModel(
+                    part.mesh, topography[part.cells], coriolis[part.vertices], 9.8, processes=process
+                )
+                assert (part.mesh.cells_on_edge < 0).any()
                 assert method(model, state).advance(state, 20.0, STEPS) == STEPS
                 parts.append(process)
             except BaseException as error:
@@ -131,10 +125,7 @@ def test_two_parts_give_the_bits_of_the_whole(
                 turns._meeting.abort()
                 raise
 
-    threads = [
-        threading.Thread(target=run, args=arguments)
-        for arguments in ((east, first_cell_in_east), (~east, ~first_cell_in_east))
-    ]
+    threads = [threading.Thread(target=run, args=(block,)) for block in (0, 1)]
     for thread in threads:
         thread.start()
     for thread in threads:
@@ -177,9 +168,7 @@ def test_values_arrive_in_any_order_of_the_tiles(
     topography, coriolis, start = setting(shuffled)
     seen = []
 
-    class Telling(OneProcess):
-        alone = False
-
+    class Telling(Meeting):
         def exchange(self, state: State) -> None:
             seen.append(state.copy())
             state.thickness[0] = 1234.5

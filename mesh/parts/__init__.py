@@ -1,0 +1,1 @@
+"""Parts of a mesh, which are meshes in which neighbours are missing."""
