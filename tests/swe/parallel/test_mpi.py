@@ -32,8 +32,9 @@ pytestmark = pytest.mark.skipif(
 )
 
 CONSISTENT = {"scheme": "consistent", "anticipation": 0.5, "dissipation": 1e15}
-QUICK: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}, CONSISTENT]
+QUICK: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}]
 SLOW: list[dict[str, Any]] = [
+    CONSISTENT,
     {"integrator": "rfbrk3", "dissipation": 1e15},
     {"integrator": "rrk4", "upwinding": 0.5},
     {"integrator": "fbrk3", **CONSISTENT},  # in plain loops
