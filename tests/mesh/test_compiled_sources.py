@@ -53,6 +53,7 @@ def result(process: subprocess.Popen[str]) -> tuple[list[str], str]:
     return out.split(), err
 
 
+@pytest.mark.slow
 def test_a_constant_changed_in_another_module_is_used(installation: Path, tmp_path: Path) -> None:
     cache = {"NUMBA_CACHE_DIR": str(tmp_path / "cache")}
     assert result(program(installation, **cache))[0] == ["3.0", "0"]
@@ -65,7 +66,6 @@ def test_a_constant_changed_in_another_module_is_used(installation: Path, tmp_pa
     assert result(program(installation, **cache))[0] == ["6.0", "1"]
 
 
-@pytest.mark.slow
 def test_processes_that_start_at_once(installation: Path) -> None:
     for process in [program(installation) for _ in range(3)]:
         assert result(process)[0][0] == "3.0"

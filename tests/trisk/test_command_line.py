@@ -218,6 +218,7 @@ def test_interrupted_generation_resumes(trisk, tmp_path: Path) -> None:
     assert {path.name for path in tmp_path.iterdir()} == {"mesh.nc"}
 
 
+@pytest.mark.slow
 def test_meshes_under_a_density(trisk, mesh_file: Path, tmp_path: Path) -> None:
     output = tmp_path / "circle.nc"
     assert trisk("mesh", "--cells", 300, "--density", "refined-circle", "-o", output, "-q")[0] == 0

@@ -103,6 +103,7 @@ def test_a_finished_study_is_not_run_again(plan: Plan, study: tuple) -> None:
         assert dataclasses.replace(task, **change).finished_run() is None, change
 
 
+@pytest.mark.slow
 def test_report_holds_everything(plan: Plan, study: tuple) -> None:
     page = write_mesh_report(plan, *study, ["trisk", "study", "mesh"]).read_text()
     assert page.count('<img src="data:image/png;base64,') == 6

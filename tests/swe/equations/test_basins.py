@@ -113,7 +113,8 @@ def test_terms_leave_walls_alone(part: VoronoiMesh) -> None:
         {},
         {"integrator": "rrk4"},
         {"integrator": "rfbrk3"},
-        {"anticipation": 0.5, "dissipation": 1e15},
+        {"dissipation": 1e15},
+        pytest.param({"anticipation": 0.5, "dissipation": 1e15}, marks=pytest.mark.slow),
         pytest.param({"upwinding": 0.3}, marks=pytest.mark.slow),
     ],
 )
