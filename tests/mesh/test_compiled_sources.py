@@ -66,6 +66,7 @@ def test_a_constant_changed_in_another_module_is_used(installation: Path, tmp_pa
     assert result(program(installation, **cache))[0] == ["6.0", "1"]
 
 
+@pytest.mark.slow
 def test_processes_that_start_at_once(installation: Path) -> None:
     for process in [program(installation) for _ in range(3)]:
         assert result(process)[0][0] == "3.0"

@@ -211,6 +211,7 @@ def test_a_mesh_made_otherwise_and_a_damaged_run_are_made_again(plan: Plan, tmp_
     assert mesh_study.carry_out(small, False, silent)[1][0]["cells"] == 162
 
 
+@pytest.mark.slow
 def test_without_a_solution_there_is_conservation(plan: Plan, tmp_path: Path) -> None:
     case = dataclasses.replace(find_case("williamson5"), mountain_height=1000.0)
     small = dataclasses.replace(plan, folder=tmp_path, case=case, families=("scvt",), cells=(162,))

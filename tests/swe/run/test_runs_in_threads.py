@@ -30,6 +30,7 @@ with ThreadPoolExecutor(2) as pool:
 """
 
 
+@pytest.mark.slow
 def test_files_are_those_of_runs_alone(tmp_path: Path) -> None:
     folders = [tmp_path / name for name in ("alone", "first", "second")]
     done = subprocess.run([sys.executable, "-c", PROGRAM, *folders], capture_output=True, text=True, timeout=200)
