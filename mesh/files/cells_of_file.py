@@ -6,10 +6,10 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.errors import MeshError, require
-from mesh.files.mesh_file import FileContent, read_content
+from mesh.files.mesh_file import FileContent, opened_mesh_file, read_content
 from mesh.geometry.sphere import dot, from_lonlat, normalize
 from mesh.partition.cell_graph import CellGraph, graph_of_triangles
-from mesh.safe_files import AnyPath, dataset
+from mesh.safe_files import AnyPath
 
 CARTESIAN = ("x_cell", "y_cell", "z_cell")
 ANGLES = ("lon_cell", "lat_cell")
@@ -36,14 +36,10 @@ def read_cells(path: AnyPath) -> tuple[CellGraph, Array]:
 
 def _read(path: Path, names: frozenset[str]) -> FileContent:
     try:
-        with dataset(path) as file:
-            file.set_auto_mask(False)
+        with opened_mesh_file(path) as file:
             return read_content(file, names)
     except MeshError as error:
         raise MeshError(f"{path}: {error}") from error
-    except (OSError, RuntimeError, IndexError, ValueError) as error:
-        reason = f"not a readable NetCDF file ({error})" if path.is_file() else "no such file"
-        raise MeshError(f"{path}: {reason}; give an MPAS mesh file") from error
 
 
 def _graph(content: FileContent) -> CellGraph:

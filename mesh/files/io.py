@@ -16,7 +16,7 @@ from mesh.density.record import define_generation, fill_generation, read_generat
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
 from mesh.files.assembly import assembled_mesh
-from mesh.files.mesh_file import FileContent, read_content
+from mesh.files.mesh_file import FileContent, opened_mesh_file, read_content
 from mesh.safe_files import AnyPath, dataset, definitions, written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -157,13 +157,6 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
 
 def _read(path: Path) -> tuple[FileContent, tuple[str, str, NDArray[np.bool_] | None]]:
     """The content of a mesh file, and how the mesh was generated."""
-    try:
-        with dataset(path) as file:
-            file.set_auto_mask(False)
-            content = read_content(file)
-            return content, read_generation(file, content.n_cells)
-    except MeshError:
-        raise
-    except (OSError, RuntimeError, IndexError, ValueError) as error:
-        reason = "no such file" if not path.exists() else f"not a readable NetCDF file ({error})"
-        raise MeshError(f"{reason}; give an MPAS mesh file") from error
+    with opened_mesh_file(path) as file:
+        content = read_content(file)
+        return content, read_generation(file, content.n_cells)

@@ -1,6 +1,9 @@
 """The content of an MPAS mesh file in the conventions of memory: arrays of any type, not yet checked."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from pathlib import Path
 
 import netCDF4
 import numpy as np
@@ -9,6 +12,7 @@ from numpy.typing import NDArray
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError
+from mesh.safe_files import dataset
 
 SIZES = {"two": 2, "vertex_degree": 3}
 """Of dimensions that have one size in all meshes."""
@@ -36,6 +40,20 @@ class FileContent:
     radius: object
     n_cells: int
     single_precision: bool
+
+
+@contextmanager
+def opened_mesh_file(path: Path) -> Iterator[netCDF4.Dataset]:
+    """A mesh file to be read; raises `MeshError`, which does not name it, where it is none."""
+    try:
+        with dataset(path) as file:
+            file.set_auto_mask(False)
+            yield file
+    except MeshError:
+        raise
+    except (OSError, RuntimeError, IndexError, ValueError) as error:
+        reason = f"not a readable NetCDF file ({error})" if path.is_file() else "no such file"
+        raise MeshError(f"{reason}; give an MPAS mesh file") from error
 
 
 def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> FileContent:

@@ -62,6 +62,15 @@ class FusedMethod:
         self._fetch = model.processes.exchange_in(self.tiles.cell_order, self.tiles.edge_order)
 
     @property
+    def _setting(self) -> tuple[object, ...]:
+        """What every loop of `tile_kernels` takes first: the tiles, scratch, changes of vorticity, gravity, motion."""
+        model = self.model
+        return (
+            *(self.tiles.arrays, self._scratch, self._parts, *self._changed),
+            *(model.gravity, not model.prescribed_wind),
+        )
+
+    @property
     def unsound(self) -> int:
         """Number of non-finite values and non-positive thicknesses after the last step."""
         return int(self._unsound.sum())
@@ -106,15 +115,12 @@ class FusedMethod:
 
     def tendency(self, state: State, result: State, time: float = 0.0) -> None:
         """Write the time derivative of `state` into `result`, as the stages of a step use it at any `time`."""
-        tiles, model = self.tiles, self.model
+        tiles = self.tiles
         in_order = tiles.cell_order is None and tiles.edge_order is None
         slope = (result.thickness, result.normal_velocity) if in_order else self._stages[0]
         for values in slope:
             values.fill(0.0)
-        moving, at = not model.prescribed_wind, self._in_order(state)
-        tile_kernels.tendency(
-            *(tiles.arrays, self._scratch, self._parts, *self._changed, model.gravity, moving, at, slope, self._unsound)
-        )
+        tile_kernels.tendency(*self._setting, self._in_order(state), slope, self._unsound)
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:
@@ -150,34 +156,12 @@ class FusedRungeKutta(FusedMethod):
         return 4 * tiles + (2 + 3 + 3 + 4) * state
 
     def _steps(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        tiles, model = self.tiles, self.model
-        taken: int = tile_kernels.rk4_steps(
-            *(
-                tiles.arrays,
-                self._scratch,
-                self._parts,
-                *self._changed,
-                model.gravity,
-                not model.prescribed_wind,
-                y,
-                *self._stages,
-            ),
-            *(time_step, steps, self._unsound),
-        )
+        taken: int = tile_kernels.rk4_steps(*self._setting, y, *self._stages, time_step, steps, self._unsound)
         return taken
 
     def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
         """The stages of `rk4_steps`, with an exchange of values between processes after each."""
-        model, (second, third, fourth) = self.model, self._stages
-        fixed = (
-            self.tiles.arrays,
-            self._scratch,
-            self._parts,
-            *self._changed,
-            model.gravity,
-            not model.prescribed_wind,
-            y,
-        )
+        fixed, (second, third, fourth) = (*self._setting, y), self._stages
         for taken in range(1, steps + 1):
             for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
                 tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
