@@ -13,6 +13,8 @@ from typing import TextIO, cast
 import typer
 
 from trisk.cli import bench, cases, compare, mesh, partition, plot, quality, reference, run, spectra, study
+from trisk.processes.launch import launch_of
+from trisk.processes.together import run_together
 from trisk.report.streams import ErrorOutput
 
 COMMANDS = (
@@ -68,8 +70,17 @@ def main() -> None:
         sys.stdout.reconfigure(errors="backslashreplace")  # file names may hold any bytes
     if sys.stderr is not None:
         sys.stderr = cast(TextIO, ErrorOutput(sys.stderr))
+    launch = launch_of()
+    if launch.size == 1:
+        _reported(_call_app)
+    else:
+        _reported(lambda: run_together(lambda: _reported(_call_app), launch))
+
+
+def _reported(action: Callable[[], None]) -> None:
+    """Call `action`; exit with a line and a code if it fails in a foreseen way."""
     try:
-        _call_app()
+        action()
     except BrokenPipeError:
         sys.exit(STOPPED + signal.SIGPIPE)
     except Exception as error:

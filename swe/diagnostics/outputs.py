@@ -16,10 +16,14 @@ from swe.diagnostics.invariants import Changes, Invariants, measure_invariants, 
 from swe.equations.model import Diagnosis, ShallowWaterModel
 from swe.equations.terms import Term
 from swe.errors import InputError
+from swe.parallel.processes import Place
 from swe.state import State
 
 CELLS, EDGES, VERTICES = "nCells", "nEdges", "nVertices"
 """Places of fields, by the names of the dimensions in files."""
+
+PLACES: dict[str, Place] = {CELLS: "cells", EDGES: "edges", VERTICES: "vertices"}
+"""The same, as processes call them."""
 
 
 @dataclass(frozen=True, eq=False)

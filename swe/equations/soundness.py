@@ -8,23 +8,28 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
+from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
 
 THIN = 0.5
 """A vertex thinner than this fraction of its thinnest cell causes a warning before a run."""
 
 
-def problem_with_state(mesh: VoronoiMesh, state: State) -> str | None:
-    """What is wrong with `state`, as the end of a sentence; None if nothing is."""
+def problem_with_state(mesh: VoronoiMesh, state: State, processes: Processes = ONE_PROCESS) -> str | None:
+    """What is wrong with `state`, as the end of a sentence; None if nothing is.
+
+    Entities are told by their numbers in the mesh of all `processes`.
+    """
     h, u = state.thickness, state.normal_velocity
     if not np.isfinite(u.sum()):
         edge = int(np.argmax(~np.isfinite(u)))
-        return f"normal velocity is {u[edge]:g} m/s at edge {edge} (counted from 0)"
+        return f"normal velocity is {u[edge]:g} m/s at edge {processes.number('edges', edge)} (counted from 0)"
     if h.min() > 0.0 and np.isfinite(h.max()):
         return None
     cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
     return (
-        f"thickness is {h[cell]:g} m in cell {cell} (counted from 0) {_place(mesh.lon_cell[cell], mesh.lat_cell[cell])}"
+        f"thickness is {h[cell]:g} m in cell {processes.number('cells', cell)} (counted from 0) "
+        f"{_place(mesh.lon_cell[cell], mesh.lat_cell[cell])}"
     )
 
 
@@ -33,31 +38,39 @@ def has_negative_kites(mesh: VoronoiMesh) -> bool:
     return bool(mesh.kite_areas_on_vertex.min() < 0.0)
 
 
-def problem_at_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
-    """Where `thickness` (n_cells,) is not positive at a vertex, in words; None if nowhere, or if a cell fails."""
+def problem_at_vertices(mesh: VoronoiMesh, thickness: Array, processes: Processes = ONE_PROCESS) -> str | None:
+    """Where `thickness` (n_cells,) is not positive at a vertex of this one of the `processes`, in words, or None.
+
+    None also if a cell fails, which is another matter.
+    """
     if not (thickness.min() > 0.0 and np.isfinite(thickness.max())):
         return None
     at_vertices = vertex_thickness(mesh, thickness)
-    wrong = ~(at_vertices > 0.0)
+    wrong = np.zeros(len(at_vertices), bool)
+    own = processes.own.vertices
+    wrong[own] = ~(at_vertices[own] > 0.0)
     if not wrong.any():
         return None
     vertex = int(np.argmax(wrong))
     around = ", ".join(f"{value:g}" for value in thickness[mesh.cells_on_vertex[vertex]])
     obtuse = int(np.count_nonzero((mesh.kite_areas_on_vertex < 0.0).any(axis=1)))
     return (
-        f"thickness is {at_vertices[vertex]:g} m at vertex {vertex} (counted from 0) "
+        f"thickness is {at_vertices[vertex]:g} m at vertex {processes.number('vertices', vertex)} (counted from 0) "
         f"{_place(mesh.lon_vertex[vertex], mesh.lat_vertex[vertex])}, the corner of cells of {around} m: "
         f"{obtuse} triangles of the mesh are so obtuse that kites are negative; use a mesh without them "
         "(trisk mesh --well-centred)"
     )
 
 
-def warning_of_vertices(mesh: VoronoiMesh, thickness: Array) -> str | None:
-    """A warning of `thickness` that is positive at vertices but thin at some; None if there are no such vertices."""
+def thin_vertices(mesh: VoronoiMesh, thickness: Array, processes: Processes = ONE_PROCESS) -> int:
+    """At how many vertices of all `processes` `thickness` is less than `THIN` of that of the thinnest cell around."""
     around = thickness[mesh.cells_on_vertex].min(axis=1)
-    thin = int(np.count_nonzero(vertex_thickness(mesh, thickness) < THIN * around))
-    if thin == 0:
-        return None
+    thin = vertex_thickness(mesh, thickness) < THIN * around
+    return int(processes.sums(np.array([float(np.count_nonzero(thin[processes.own.vertices]))]))[0])
+
+
+def warning_of_vertices(thin: int) -> str:
+    """A warning of so many `thin_vertices`."""
     vertices = "vertex" if thin == 1 else "vertices"
     return (
         f"at {thin} {vertices} of obtuse triangles thickness is less than {THIN:g} of that of the thinnest cell "

@@ -5,14 +5,19 @@ A file is a zip archive of numpy arrays, whose checksums show whether it is whol
 
 import os
 import warnings
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from mesh.safe_files import written_aside
 from swe.errors import InputError, RunError, SetupWarning
+from swe.parallel.processes import Processes
 from swe.state import State
+
+NO_STATE = State(np.empty(0), np.empty(0))
+"""What other processes hold of the state of a checkpoint that the first one has read."""
 
 KEPT = 2
 
@@ -91,6 +96,25 @@ def last_checkpoint(directory: Path, n_cells: int, n_edges: int, latest: float =
     if (shared or numbered) and not any_whole:
         raise InputError(f"no checkpoint in {directory} is whole; start anew (--force)")
     return max(found, key=lambda checkpoint: checkpoint.time, default=None)
+
+
+def shared_checkpoint(find: Callable[[], Checkpoint | None], processes: Processes) -> Checkpoint | None:
+    """The checkpoint that the first process finds, with every process's part of the state."""
+    found: list[State] = []
+
+    def without_state() -> Checkpoint | None:
+        checkpoint = find()
+        if checkpoint is None:
+            return None
+        found.append(checkpoint.state)
+        return replace(checkpoint, state=NO_STATE)
+
+    checkpoint = processes.on_first(without_state)
+    if checkpoint is None:
+        return None
+    state = found[0] if found else NO_STATE
+    h, u = processes.scattered("cells", state.thickness), processes.scattered("edges", state.normal_velocity)
+    return replace(checkpoint, state=State(h, u))
 
 
 def remove_checkpoints(directory: Path, after: int = 0) -> None:

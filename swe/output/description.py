@@ -6,15 +6,16 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from mesh.files.io import mesh_hash
+from mesh.arrays import Array
+from mesh.files.whole_mesh import WholeMesh
 from mesh.plain import recorded
-from mesh.voronoi_mesh import VoronoiMesh
 from swe.configuration import Configuration
 from swe.diagnostics.invariants import Invariants
 from swe.diagnostics.outputs import FIELDS
 from swe.equations.model import ShallowWaterModel
 from swe.equations.terms import Term
 from swe.errors import InputError
+from swe.parallel.processes import Place, Processes
 from swe.state import State
 from swe.stepping.time_stepping import Tendency
 
@@ -45,9 +46,14 @@ class RunDescription:
     loops: str
 
     @property
-    def mesh(self) -> VoronoiMesh:
-        """The mesh, scaled to the radius of the case."""
-        return self.model.mesh
+    def processes(self) -> Processes:
+        """Those that share the run."""
+        return self.model.processes
+
+    @property
+    def mesh(self) -> WholeMesh:
+        """The mesh of all processes, scaled to the radius of the case."""
+        return self.processes.whole_mesh(self.model.mesh)
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,7 +76,7 @@ def described(run: RunDescription) -> dict[str, object]:
             f"the parameters of {run.case_name} cannot be recorded ({error}); give numbers, words, or lists of them"
         ) from error
     return {
-        "mesh_hash": mesh_hash(run.mesh),
+        "mesh_hash": run.processes.on_first(run.mesh.identity),
         "case": run.case_name,
         "parameters": as_recorded,
         "configuration": asdict(run.configuration),
@@ -82,11 +88,17 @@ def described(run: RunDescription) -> dict[str, object]:
 
 def start_hash(model: ShallowWaterModel, state: State, forcings: Iterable[Term] = ()) -> str:
     """SHA-256, in hexadecimal, of gravity, `state`, topography, Coriolis parameter and tendencies of the `forcings`."""
-    digest = hashlib.sha256(np.float64(model.gravity).tobytes())
-    added = [values for term in forcings for values in vars(model.tendency_of(term, state)).values()]
-    for values in (*vars(state).values(), model.topography, model.coriolis, *added):
-        digest.update(np.ascontiguousarray(values).tobytes())
-    return digest.hexdigest()
+    digest, processes = hashlib.sha256(np.float64(model.gravity).tobytes()), model.processes
+    fields = [*_in_places(state), ("cells", model.topography), ("vertices", model.coriolis)]
+    for term in forcings:
+        fields += _in_places(model.tendency_of(term, state))
+    for place, values in fields:
+        digest.update(np.ascontiguousarray(processes.gathered(place, values)).data)
+    return processes.on_first(digest.hexdigest)
+
+
+def _in_places(state: State) -> list[tuple[Place, Array]]:
+    return [("cells", state.thickness), ("edges", state.normal_velocity)]
 
 
 def difference(name: str, then: object, now: object) -> str:

@@ -8,6 +8,7 @@ import json
 import time as clock
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from functools import partial
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
@@ -17,12 +18,13 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.conventions import BY_NAME, COORDINATES
-from mesh.files.io import define_mesh_variables, fill_mesh_variables, mesh_attributes
 from mesh.safe_files import dataset, definitions, netcdf_lock, opened_dataset, written_aside
 from swe.diagnostics.budgets import rate_series
-from swe.diagnostics.outputs import FIELDS, SERIES, TOPOGRAPHY, Evaluation, Field, Series, diagnostics_row
+from swe.diagnostics.outputs import FIELDS, PLACES, SERIES, TOPOGRAPHY, Evaluation, Field, Series, diagnostics_row
 from swe.equations.model import ShallowWaterModel
 from swe.errors import InputError, RunError
+from swe.output.description import RunDescription
+from swe.parallel.processes import Processes
 
 HISTORY_FILE = "history.nc"
 DIAGNOSTICS_FILE = "diagnostics.nc"
@@ -44,29 +46,41 @@ TIME_COORDINATE = "Time"
 PACKAGES = ("trisk", "numpy", "scipy", "numba", "netCDF4")
 
 
-def create_history(path: Path, model: ShallowWaterModel, fields: Iterable[str], description: Mapping[str, Any]) -> None:
-    """Create a history file without snapshots, for `fields`; raise `RunError` if it cannot be written.
+def create_history(path: Path, run: RunDescription, description: Mapping[str, Any]) -> None:
+    """Create a history file without snapshots; raise `RunError` if it cannot be written.
 
-    Its attributes come from the `description` of the run.
+    Its attributes come from what `described` says of the run.
     """
-    mesh = model.mesh
+    model, processes = run.model, run.processes
+    topography = processes.gathered("cells", model.topography)
+    processes.on_first(lambda: _create_history(path, run, description, topography))
+
+
+def _create_history(path: Path, run: RunDescription, description: Mapping[str, Any], topography: Array) -> None:
+    mesh = run.mesh
     with _new_file(path) as file:
-        identity = mesh_attributes(mesh, "snapshots of a shallow-water run", description["mesh_hash"])
+        identity = mesh.attributes("snapshots of a shallow-water run", description["mesh_hash"])
         with definitions(file):
-            file.setncatts({**identity, **_attributes(model, description)})
-            define_mesh_variables(file, mesh, GEOMETRY)
+            file.setncatts({**identity, **_attributes(run.model, description)})
+            mesh.define(file, GEOMETRY)
             _define_time(file)
             _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
-            for name in fields:
+            for name in run.fields:
                 _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
-        fill_mesh_variables(file, mesh, GEOMETRY)
-        file["topography"][:] = model.topography
+        mesh.fill(file, GEOMETRY)
+        file["topography"][:] = topography
 
 
 def create_diagnostics(
-    path: Path, model: ShallowWaterModel, series: Mapping[str, Series], description: Mapping[str, Any]
+    path: Path, run: RunDescription, series: Mapping[str, Series], description: Mapping[str, Any]
 ) -> None:
     """Create a diagnostics file without rows, for `series`; raise `RunError` if it cannot be written."""
+    run.processes.on_first(lambda: _create_diagnostics(path, run.model, series, description))
+
+
+def _create_diagnostics(
+    path: Path, model: ShallowWaterModel, series: Mapping[str, Series], description: Mapping[str, Any]
+) -> None:
     with _new_file(path) as file, definitions(file):
         file.setncatts({"Conventions": "CF-1.8", "source": "trisk", **_attributes(model, description)})
         _define_time(file)
@@ -104,57 +118,77 @@ def _new_file(path: Path) -> Iterator[netCDF4.Dataset]:
 class _TimeFile:
     """A file that grows along time; the first `rows` stay, all by default, and what follows them is cut off.
 
+    The first of the `processes` has it open, and alone knows of what is written since.
+
     Raises `InputError` if the file cannot be continued: it cannot be read, lacks a variable, is shorter than `size`
     bytes, or the times of its first `rows` do not increase.
     """
 
-    def __init__(self, path: Path, names: Iterable[str], rows: int | None = None, size: int = 0) -> None:
+    def __init__(
+        self, path: Path, names: Iterable[str], processes: Processes, rows: int | None = None, size: int = 0
+    ) -> None:
         self._path = path
         self._failed = False
-        with netcdf_lock:
-            self._open(path, names, rows, size)
+        self.processes = processes
+        self._file: netCDF4.Dataset | None = None
+        self.rows = processes.on_first(lambda: self._open(names, rows, size))
 
-    def _open(self, path: Path, names: Iterable[str], rows: int | None, size: int) -> None:
-        try:
-            self._file = _opened(path)
-            present = len(self._file.dimensions["Time"])
-            missing = {"time", *names} - set(self._file.variables)
-        except (OSError, RuntimeError, KeyError) as error:
-            raise InputError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
-        self.rows = present if rows is None else rows
-        times = np.asarray(self._file["time"][: self.rows]) if not missing else np.empty(0)
-        if missing or self.rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
-            self._file.close()
-            raise InputError(f"{path} is not what its run had written, {self.rows} rows; start anew (--force)")
-        if self.rows < present:
-            self._file.close()
-            _cut_off(path, self.rows, size)
-            self._file = _opened(path)
-        self._file.set_fill_off()
+    def _open(self, names: Iterable[str], kept: int | None, size: int) -> int:
+        """Open the file; return the number of its rows."""
+        path = self._path
+        with netcdf_lock:
+            try:
+                file = _opened(path)
+                present = len(file.dimensions["Time"])
+                missing = {"time", *names} - set(file.variables)
+            except (OSError, RuntimeError, KeyError) as error:
+                raise InputError(f"{path} cannot be opened to go on ({error}); start anew (--force)") from error
+            rows = present if kept is None else kept
+            times = np.asarray(file["time"][:rows]) if not missing else np.empty(0)
+            if missing or rows > present or path.stat().st_size < size or np.any(np.diff(times, prepend=-1.0) <= 0.0):
+                file.close()
+                raise InputError(f"{path} is not what its run had written, {rows} rows; start anew (--force)")
+            if rows < present:
+                file.close()
+                _cut_off(path, rows, size)
+                file = _opened(path)
+            file.set_fill_off()
+        self._file = file
+        return rows
 
     @property
     def size(self) -> int:
         """Bytes of the file."""
         return self._path.stat().st_size
 
-    def _write(self, values: Mapping[str, Array]) -> None:
-        """Write new rows (n, ...) of every variable."""
-        rows = slice(self.rows, self.rows + len(values["time"]))
+    def _put(self, values: Mapping[str, Array]) -> None:
+        """Write rows (n, ...) of some variables after those that are counted."""
+        assert self._file is not None
+        with self._writing():
+            for name, value in values.items():
+                self._file[name][self.rows : self.rows + len(value)] = value
+
+    def _finish(self, times: Array) -> None:
+        """Write the times (n,), s, of the rows of which everything else is written, so that they count."""
+        assert self._file is not None
+        known = [name for name in ("time", TIME_COORDINATE) if name in self._file.variables]  # earlier versions: one
+        self._put(dict.fromkeys(known, times))
+        with self._writing():
+            self._file.sync()
+        self.rows += len(times)
+
+    @contextmanager
+    def _writing(self) -> Iterator[None]:
         try:
             with netcdf_lock:
-                for name, value in values.items():
-                    self._file[name][rows] = value
-                if TIME_COORDINATE in self._file.variables:  # files of earlier versions have none
-                    self._file[TIME_COORDINATE][rows] = values["time"]
-                self._file.sync()
+                yield
         except (OSError, RuntimeError) as error:
             self._failed = True
             raise RunError(f"{self._path} cannot be written ({error}); is the disk full?") from error
-        self.rows = rows.stop
 
     def close(self) -> None:
         """Close the file; one that could not be written is left alone, as the library does not survive closing it."""
-        if not self._failed:
+        if self._file is not None and not self._failed:
             with netcdf_lock:
                 self._file.close()
 
@@ -178,41 +212,58 @@ def _cut_off(path: Path, rows: int, size: int) -> None:
 class HistoryFile(_TimeFile):
     """Snapshots of some `fields`, written one by one."""
 
-    def __init__(self, path: Path, fields: tuple[str, ...], rows: int | None = None, size: int = 0) -> None:
-        super().__init__(path, fields, rows, size)
+    def __init__(
+        self, path: Path, fields: tuple[str, ...], processes: Processes, rows: int | None = None, size: int = 0
+    ) -> None:
+        super().__init__(path, fields, processes, rows, size)
         self._fields = fields
 
     def append(self, now: Evaluation) -> None:
-        """Write the snapshot of a state."""
-        fields = {name: FIELDS[name].value(now) for name in self._fields}
-        self._write({name: values[None] for name, values in {**fields, "time": np.array(now.time)}.items()})
+        """Write the snapshot of a state, one whole field after another."""
+        for name in self._fields:
+            field = FIELDS[name]
+            whole = self.processes.gathered(PLACES[field.place], field.value(now))
+            self.processes.on_first(partial(self._put, {name: whole[None]}))
+        self.processes.on_first(lambda: self._finish(np.array([now.time])))
 
 
 class DiagnosticsFile(_TimeFile):
     """The given `series` by name; rows wait up to a second and are written together."""
 
-    def __init__(self, path: Path, series: Mapping[str, Series], rows: int | None = None, size: int = 0) -> None:
-        super().__init__(path, series, rows, size)
+    def __init__(
+        self, path: Path, series: Mapping[str, Series], processes: Processes, rows: int | None = None, size: int = 0
+    ) -> None:
+        super().__init__(path, series, processes, rows, size)
         self._series = series
         self._waiting: list[dict[str, float]] = []
         self._written = clock.monotonic()
-        self._last: dict[str, float] | None = None
-        if self.rows > 0:
-            with netcdf_lock:
-                self._last = {name: float(self._file[name][self.rows - 1]) for name in ("time", *series)}
+        self._last = processes.on_first(self._last_row)
+
+    def _last_row(self) -> dict[str, float] | None:
+        if self.rows == 0:
+            return None
+        assert self._file is not None
+        with netcdf_lock:
+            return {name: float(self._file[name][self.rows - 1]) for name in ("time", *self._series)}
 
     def append(self, now: Evaluation) -> None:
         """Add the row for a state."""
-        self._last = diagnostics_row(now, self._series, self._last)
-        self._waiting.append(self._last)
+        row = self._last = diagnostics_row(now, self._series, self._last)
+        self.processes.on_first(lambda: self._add(row))
+
+    def _add(self, row: dict[str, float]) -> None:
+        self._waiting.append(row)
         if self.rows == 0 or clock.monotonic() - self._written > SECONDS_BETWEEN_WRITES:
             self.flush()
 
     def flush(self) -> None:
-        """Write the waiting rows."""
+        """Write the waiting rows; the first process does it alone."""
         waiting, self._waiting = self._waiting, []
         if waiting:
-            self._write({name: np.array([row[name] for row in waiting]) for name in waiting[0]})
+            rows = {name: np.array([row[name] for row in waiting]) for name in waiting[0]}
+            times = rows.pop("time")
+            self._put(rows)
+            self._finish(times)
         self._written = clock.monotonic()
 
     def close(self) -> None:

@@ -4,13 +4,12 @@ import os
 import time as clock
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from pathlib import Path
 
 import numba
 
 from mesh.errors import MeshError
-from mesh.files.io import write_mesh
 from mesh.safe_files import held, place_of, remove_leftovers
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.outputs import Evaluation, series_of
@@ -21,6 +20,7 @@ from swe.output.checkpoint import (
     last_checkpoint,
     remove_checkpoints,
     remove_superseded,
+    shared_checkpoint,
     write_checkpoint,
 )
 from swe.output.description import ABSENT, ABSENT_CONFIGURATION, Moment, RunDescription, described, difference
@@ -37,12 +37,14 @@ from swe.output.files import (
     read_record,
     write_record,
 )
+from swe.state import State
 
 
 class Recorder:
     """Writes snapshots, diagnostics, checkpoints and the record of a run.
 
-    `early_end` says, in words, why a run ended early, if it did.
+    Every process of the run has one, but only the first reads and writes files. `early_end` says, in words, why a run
+    ended early, if it did.
 
     Raises `InputError` if the directory cannot be used, already holds a run that is neither to be replaced nor resumed,
     or holds a run to resume that was made with other settings.
@@ -54,6 +56,7 @@ class Recorder:
         self._days_before: float | None = None
         self._seconds_before = 0.0
         self._run = run
+        self._processes = run.processes
         self._description = described(run)
         self._versions = package_versions()
         self._history: HistoryFile | None = None
@@ -61,7 +64,7 @@ class Recorder:
         self._begun = clock.perf_counter()
         self._reached: Checkpoint | None = None
         self._overwrite, self._resume = overwrite, resume
-        self._found = run_to_go_on_with(directory, overwrite, resume)
+        self._found = self._processes.on_first(lambda: run_to_go_on_with(directory, overwrite, resume))
         self._began = False
         self.early_end = ""
         if self._found is not None:
@@ -116,7 +119,9 @@ class Recorder:
 
     def _last_checkpoint(self, latest: float = float("inf")) -> Checkpoint | None:
         mesh = self._run.mesh
-        return last_checkpoint(self.directory, mesh.n_cells, mesh.n_edges, latest=latest)
+        return shared_checkpoint(
+            lambda: last_checkpoint(self.directory, mesh.n_cells, mesh.n_edges, latest=latest), self._processes
+        )
 
     def _require_unchanged(self) -> None:
         """Raise `InputError` if another run has written to the directory since this one looked at it."""
@@ -132,56 +137,71 @@ class Recorder:
         """
         self._days = days
         self._begun = clock.perf_counter()
-        self._make_directory()
-        with held(self.directory) as free:
-            if not free:
-                raise InputError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
-            self._require_unchanged()
+        first, on_first = self._processes.first, self._processes.on_first
+        on_first(self._make_directory)
+        with held(self.directory) if first else nullcontext(True) as free:
+            on_first(lambda: self._require_free(free))
             try:
                 self._open(now())
                 yield
-                self._close()
+                on_first(self._close)
             except InputError:
                 self._close()  # the files are not those of the run to resume, and stay as they are
                 raise
             except BaseException as error:
+                # The error may be one that other processes do not know of, so that nobody may wait for them.
                 stopped = isinstance(error, RunStopped | KeyboardInterrupt)
-                self._end(now(), "interrupted" if stopped else "failed", str(error))
+                if first:
+                    self._end(now(), "interrupted" if stopped else "failed", str(error))
                 raise
-            if shared == now().time:
-                remove_superseded(self.directory, now().steps)
-            self._end(now(), "stopped" if self.early_end else "completed", self.early_end)
+            on_first(lambda: self._complete(now(), shared))
+
+    def _require_free(self, free: bool) -> None:
+        """Raise `InputError` if another run writes to the directory, or did so since this one looked at it."""
+        if not free:
+            raise InputError(f"{self.directory} is written to by another run just now; wait for it, or stop it")
+        self._require_unchanged()
+
+    def _complete(self, moment: Moment, shared: float) -> None:
+        if shared == moment.time:
+            remove_superseded(self.directory, moment.steps)
+        self._end(moment, "stopped" if self.early_end else "completed", self.early_end)
 
     def _open(self, moment: Moment) -> None:
         """Open the files where the run continues; at its start create them, and write the first snapshot and row."""
-        remove_leftovers(self.directory, (*FILES, PATTERN))
+        on_first, processes = self._processes.on_first, self._processes
+        on_first(lambda: remove_leftovers(self.directory, (*FILES, PATTERN)))
         history, diagnostics = self.directory / HISTORY_FILE, self.directory / DIAGNOSTICS_FILE
         starting, reached = moment.steps == 0, self._reached
         run, series = self._run, series_of(self._run.model.terms)
         if starting:
-            remove_checkpoints(self.directory)
-            (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that a resumed run finds no mesh of another run
-            self._write_status(moment, "running")
-            create_history(history, run.model, run.fields, self._description)
-            create_diagnostics(diagnostics, run.model, series, self._description)
+            on_first(lambda: self._clear(moment))
+            create_history(history, run, self._description)
+            create_diagnostics(diagnostics, run, series, self._description)
         if reached is None:
-            self._history = HistoryFile(history, run.fields)
-            self._diagnostics = DiagnosticsFile(diagnostics, series)
+            self._history = HistoryFile(history, run.fields, processes)
+            self._diagnostics = DiagnosticsFile(diagnostics, series, processes)
         else:
-            self._history = HistoryFile(history, run.fields, reached.snapshots, reached.history_size)
-            self._diagnostics = DiagnosticsFile(diagnostics, series, reached.rows, reached.diagnostics_size)
-            remove_checkpoints(self.directory, after=reached.steps)
+            self._history = HistoryFile(history, run.fields, processes, reached.snapshots, reached.history_size)
+            self._diagnostics = DiagnosticsFile(diagnostics, series, processes, reached.rows, reached.diagnostics_size)
+            on_first(lambda: remove_checkpoints(self.directory, after=reached.steps))
             self._reached = None
-        self._write_status(moment, "running")
+        on_first(lambda: self._write_status(moment, "running"))
         if starting or reached is not None:
-            self._write_mesh()
+            on_first(self._write_mesh)
         if starting:
             self.record(moment, True, True)
+
+    def _clear(self, moment: Moment) -> None:
+        """Remove what an earlier run left that would be taken for this one's."""
+        remove_checkpoints(self.directory)
+        (self.directory / MESH_FILE).unlink(missing_ok=True)  # so that a resumed run finds no mesh of another run
+        self._write_status(moment, "running")
 
     def _write_mesh(self) -> None:
         try:
             history, known = f"mesh of a run of {self._run.case_name}", str(self._description["mesh_hash"])
-            write_mesh(self._run.mesh, self.directory / MESH_FILE, history, known_hash=known)
+            self._run.mesh.write(self.directory / MESH_FILE, history, known)
         except MeshError as error:
             raise RunError(str(error)) from error
 
@@ -214,13 +234,18 @@ class Recorder:
 
     def checkpoint(self, moment: Moment, shared: bool = False) -> None:
         """Write a checkpoint, after all output that precedes it; see `write_checkpoint`."""
+        gathered, state = self._processes.gathered, moment.state
+        whole = State(gathered("cells", state.thickness), gathered("edges", state.normal_velocity))
+        self._processes.on_first(lambda: self._write_checkpoint(moment, whole, shared))
+
+    def _write_checkpoint(self, moment: Moment, state: State, shared: bool) -> None:
         assert self._history is not None
         assert self._diagnostics is not None
         self._diagnostics.flush()
         write_checkpoint(
             self.directory,
             Checkpoint(
-                moment.state,
+                state,
                 moment.time,
                 moment.steps,
                 self._history.rows,
@@ -256,8 +281,9 @@ class Recorder:
             "day_reached": moment.time / SECONDS_PER_DAY,
             "steps": moment.steps,
             "wall_seconds": self._seconds_before + clock.perf_counter() - self._begun,
+            "processes": self._processes.count,
             "threads": numba.get_num_threads(),
-            "cells": self._run.mesh.n_cells,
+            "cells": self._run.model.cells,
             "loops": self._run.loops,
             **self._description,
             "versions": self._versions,

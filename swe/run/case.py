@@ -14,6 +14,7 @@ from swe.equations.model import check_field
 from swe.equations.soundness import has_negative_kites, problem_at_vertices, problem_with_state
 from swe.equations.terms import Forcing
 from swe.errors import InputError
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 from swe.state import State
 
 
@@ -68,33 +69,73 @@ class CaseFields:
     kites_matter: bool
 
 
-def case_fields(case: Case, mesh: VoronoiMesh, sampling: Sampling) -> CaseFields:
-    """The fields of `case` on `mesh`, scaled to its radius; raises `InputError` if they are invalid."""
+def case_fields(case: Case, mesh: VoronoiMesh, sampling: Sampling, processes: Processes = ONE_PROCESS) -> CaseFields:
+    """The fields of `case` on `mesh`, scaled to its radius; raises `InputError` if they are invalid.
+
+    All `processes` do this together, each on its part of the mesh. The fields of a case must follow from the place
+    alone, so that two processes find the same where both have it.
+    """
     mesh = mesh.scaled(case.radius)
+    negative = anywhere(processes, int(has_negative_kites(mesh))) > 0
+    kites_matter = negative and not case.prescribed_wind
+    fields = processes.together(lambda: _fields(case, mesh, sampling, kites_matter, processes))
+    if not processes.alone:
+        _require_same_everywhere(fields, processes)
+    return fields
+
+
+def _fields(case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matter: bool, processes: Processes) -> CaseFields:
     topography = _asked(case, case.topography_on, mesh, sampling)
     coriolis = _asked(case, case.coriolis_on, mesh)
     check_field("topography", topography, mesh.n_cells)
     check_field("coriolis", coriolis, mesh.n_vertices)
-    kites_matter = has_negative_kites(mesh) and not case.prescribed_wind
-    state = initial_state(case, mesh, sampling, kites_matter)
+    state = initial_state(case, mesh, sampling, kites_matter, processes)
     return CaseFields(case, mesh, topography, coriolis, state, _forcings(case), kites_matter)
 
 
-def initial_state(case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matter: bool) -> State:
-    """The state at time zero, at rest at walls; raises `InputError` if it is invalid."""
+def initial_state(
+    case: Case, mesh: VoronoiMesh, sampling: Sampling, kites_matter: bool, processes: Processes = ONE_PROCESS
+) -> State:
+    """The state at time zero, at rest at walls; raises `InputError` if it is invalid.
+
+    Every one of the `processes` looks at its own part.
+    """
     state = _asked(case, case.initial_state, mesh, sampling)
     if not isinstance(state, State):
         raise InputError(f"initial_state of {case.name} gives {type(state).__name__}; it must give a State")
     check_field("initial thickness", state.thickness, mesh.n_cells)
     check_field("initial normal velocity", state.normal_velocity, mesh.n_edges)
-    problem = problem_with_state(mesh, state)
+    problem = problem_with_state(mesh, state, processes)
     if problem:
         raise InputError(f"the initial {problem}; correct the parameters of {case.name}")
-    problem = problem_at_vertices(closed_mesh(mesh), state.thickness) if kites_matter else None
+    problem = problem_at_vertices(closed_mesh(mesh), state.thickness, processes) if kites_matter else None
     if problem:
         raise InputError(f"the initial {problem}")
     state.normal_velocity[wall_edges(mesh)] = 0.0
     return state
+
+
+def _require_same_everywhere(fields: CaseFields, processes: Processes) -> None:
+    """Raise `InputError` if thickness, velocity or topography differ between two processes at the same place."""
+    here = fields.state
+    there, bottom = here.copy(), State(fields.topography.copy(), np.zeros_like(here.normal_velocity))
+    processes.exchange(there)
+    processes.exchange(bottom)
+    pairs = {
+        "initial thickness": (here.thickness, there.thickness),
+        "initial normal velocity": (here.normal_velocity, there.normal_velocity),
+        "topography": (fields.topography, bottom.thickness),
+    }
+
+    def require_same() -> None:
+        for name, (mine, owners) in pairs.items():
+            if not np.array_equal(mine, owners):
+                raise InputError(
+                    f"the {name} of {fields.case.name} depends on the part of the mesh that it is asked for; let it "
+                    "follow from the place alone, or run on one process"
+                )
+
+    processes.together(require_same)
 
 
 def _forcings(case: Case) -> tuple[Forcing, ...]:

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from mesh.discrete.walls import closed_mesh
+from mesh.plain import plain_number
 from swe.configuration import Configuration, Options
 from swe.constants import SECONDS_PER_DAY
 from swe.equations.anticipation import Anticipation
@@ -12,7 +13,7 @@ from swe.equations.consistent import Consistent
 from swe.equations.dissipation import BiharmonicDissipation
 from swe.equations.model import ShallowWaterModel, courant_number
 from swe.equations.schemes import Ringler2010, Scheme
-from swe.equations.soundness import warning_of_vertices
+from swe.equations.soundness import thin_vertices, warning_of_vertices
 from swe.equations.terms import Term
 from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
@@ -73,6 +74,15 @@ def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> Non
             f"{integrator} keeps total energy, which the term {changing[0]} changes; take the integrator "
             f"{integrator.removeprefix('r')}"
         )
+
+
+def day_of_end(days: float | None, until: float | None, time: float) -> float:
+    """The day, counted from the start, on which a run ends that lasts `days` from `time`, s, or `until` a day."""
+    if (days is None) == (until is None):
+        raise InputError("give the days that the run goes on, run(days=...), or the day of its end, run(until=...)")
+    if until is not None:
+        return plain_number("the day of the end", until, InputError)
+    return time / SECONDS_PER_DAY + plain_number("the number of days", days, InputError)
 
 
 def require_possible_counts(configuration: Configuration, checkpoint_interval: float, seconds: float) -> None:
@@ -147,6 +157,7 @@ def warnings_before(
             f"a time step of {time_step:g} s is likely to be unstable, as {cause}; one of "
             f"{0.95 * min(waves, damping):.3g} s would do"
         )
-    thin = warning_of_vertices(model.closed, start.state.thickness) if start.kites_matter else None
-    if thin:
-        yield thin
+    if start.kites_matter:
+        thin = thin_vertices(model.closed, start.state.thickness, model.processes)
+        if thin:
+            yield warning_of_vertices(thin)

@@ -7,23 +7,31 @@ from contextlib import contextmanager
 from types import FrameType
 
 from swe.errors import RunStopped
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 
 HEEDED = (signal.SIGINT, signal.SIGTERM)
 
 
 class StopRequest:
-    """Whether, and by which signal, the run was asked to stop."""
+    """Whether, and by which signal, the run was asked to stop, as far as all of its `processes` know."""
 
-    def __init__(self) -> None:
+    def __init__(self, processes: Processes = ONE_PROCESS) -> None:
         self.signal: signal.Signals | None = None
         self.heeded = False
+        self._processes = processes
+        self._noted: signal.Signals | None = None
 
     def note(self, number: int, _frame: FrameType | None) -> None:
         """Take note of a signal; at the second one, stop at once."""
-        if self.signal is not None:
+        if self._noted is not None:
             self.heeded = True
             raise KeyboardInterrupt
-        self.signal = signal.Signals(number)
+        self._noted = signal.Signals(number)
+
+    def listen(self) -> None:
+        """Learn of the signals that any process has noted until now."""
+        number = anywhere(self._processes, 0 if self._noted is None else int(self._noted))
+        self.signal = signal.Signals(number) if number else None
 
     def raise_if_any(self, day: float, whereabouts: str) -> None:
         """Raise `RunStopped` if the run was asked to stop."""
@@ -31,14 +39,19 @@ class StopRequest:
             self.heeded = True
             raise RunStopped(f"stopped by {self.signal.name} at day {day:.3f}; {whereabouts}", self.signal)
 
+    def pass_on(self) -> None:
+        """Raise again, for whoever heeds it now, a signal that was noted here but not heeded."""
+        if self._noted is not None and not self.heeded:
+            signal.raise_signal(self._noted)
+
 
 @contextmanager
-def stop_requests() -> Iterator[StopRequest]:
+def stop_requests(processes: Processes = ONE_PROCESS) -> Iterator[StopRequest]:
     """Note Ctrl-C and SIGTERM within the context if this is the main thread; do nothing in any other.
 
     Signals that the program ignores stay ignored. One that was noted but not heeded is passed on at the end.
     """
-    request = StopRequest()
+    request = StopRequest(processes)
     if threading.current_thread() is not threading.main_thread():
         yield request
         return
@@ -51,5 +64,4 @@ def stop_requests() -> Iterator[StopRequest]:
     finally:
         for number in heeded:
             signal.signal(number, before[number])
-    if request.signal is not None and not request.heeded:
-        signal.raise_signal(request.signal)
+    request.pass_on()

@@ -4,11 +4,13 @@ import os
 import warnings
 from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, nullcontext
+from functools import partial
 
 import numpy as np
 
+from mesh.arrays import Array
 from mesh.integrals.quadrature import Sampling
-from mesh.plain import plain_number, plain_path
+from mesh.plain import plain_path
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.configuration import (
     DEFAULT_CHECKPOINT_INTERVAL,
@@ -26,10 +28,11 @@ from swe.errors import InputError, RunError, RunStopped, SetupWarning
 from swe.integrators import STEPPINGS, Integrator, Stepping
 from swe.output.description import Moment, RunDescription, start_hash
 from swe.output.recorder import Recorder
-from swe.parallel.processes import ONE_PROCESS, Processes
+from swe.parallel.processes import ONE_PROCESS, Processes, anywhere
 from swe.run.case import Case, case_fields, initial_state, require_finite_integrals
 from swe.run.composition import (
     build_model,
+    day_of_end,
     default_time_step,
     fused_method,
     plain_method,
@@ -98,7 +101,7 @@ class Simulation:
         Whether to resume the run in the directory from its last checkpoint, or from the start if it has none. The files
         are then those of an uninterrupted run, bit for bit.
     processes
-        Those that share the run; `mesh` is then this one's part of the mesh (`mesh.parts`), and `output` must be None.
+        Those that share the run; `mesh` is then this one's part of the mesh (`mesh.parts`).
 
     Attributes
     ----------
@@ -153,9 +156,9 @@ class Simulation:
         output_fields = chosen_fields(fields)
         directory = None if output is None else plain_path("output", output, InputError)
         self.case = case
-        self._start = start = case_fields(case, mesh, options.sampling)
+        self._start = start = case_fields(case, mesh, options.sampling, processes)
         self.mesh, self.state = start.mesh, start.state
-        options.require_suitable_mesh(self.mesh)
+        processes.together(lambda: options.require_suitable_mesh(self.mesh))
         require_keeping_energy(options.integrator, start.forcings)
         self.time, self.steps = 0.0, 0
         self._broken = False
@@ -194,8 +197,9 @@ class Simulation:
 
     def set_back_to_start(self) -> None:
         """Continue from the initial state."""
-        start, sampling = self._start, self.configuration.sampling
-        self.set_back_to(initial_state(self.case, self.mesh, sampling, start.kites_matter), 0.0, 0)
+        start, sampling, processes = self._start, self.configuration.sampling, self.model.processes
+        self.set_back_to(initial_state(self.case, self.mesh, sampling, start.kites_matter, processes), 0.0, 0)
+        processes.exchange(self.state)
         self.courant_number = self.initial_courant_number
 
     @property
@@ -247,7 +251,7 @@ class Simulation:
         of a second after Ctrl-C or SIGTERM; a second signal interrupts at once. Output already written stays. After any
         of these but `RunStopped`, the object no longer holds a state from which a run can continue.
         """
-        last_day = self._last_day(days, until)
+        last_day = day_of_end(days, until, self.time)
         end = last_day * SECONDS_PER_DAY
         if self._broken:
             again = "" if self.recorder is None else ", with resume=True"
@@ -261,11 +265,11 @@ class Simulation:
         require_possible_counts(self.configuration, self.checkpoint_interval, end - self.time)
         if self.recorder is not None:
             self._choose_end(self.recorder, last_day)
-        watch = Watch(self, self.time, callbacks, stop_when)
+        watch, processes = Watch(self, self.time, callbacks, stop_when), self.model.processes
         with (
             worthwhile_threads(self.mesh.n_cells),
-            stop_requests() as request,
-            ProgressBar(self.time / SECONDS_PER_DAY, last_day, progress) as bar,
+            stop_requests(processes) as request,
+            ProgressBar(self.time / SECONDS_PER_DAY, last_day, progress and processes.first) as bar,
         ):
             recording = nullcontext() if self.recorder is None else self._recording(self.recorder, last_day)
             with recording:
@@ -276,14 +280,6 @@ class Simulation:
                     self._broken = False
                     raise
             self._broken = False
-
-    def _last_day(self, days: float | None, until: float | None) -> float:
-        """The day, counted from the start, on which a run ends that lasts `days` from now, or `until` a day."""
-        if (days is None) == (until is None):
-            raise InputError("give the days that the run goes on, run(days=...), or the day of its end, run(until=...)")
-        if until is not None:
-            return plain_number("the day of the end", until, InputError)
-        return self.time / SECONDS_PER_DAY + plain_number("the number of days", days, InputError)
 
     def _described(self, fields: tuple[str, ...]) -> RunDescription:
         """What the recorder must know about the run, whose snapshots hold `fields`; called before the first step."""
@@ -339,6 +335,7 @@ class Simulation:
                 if self.recorder is not None:
                     self.recorder.record(self._now(), snapshots.is_due(self.time), diagnostics.is_due(self.time))
             bar.update(self.time / SECONDS_PER_DAY)
+            request.listen()
             if self.recorder is not None:
                 if self.time == shared and (shared < end or self.time < due):
                     self.recorder.checkpoint(self._now(), shared=True)
@@ -346,7 +343,7 @@ class Simulation:
                     self.recorder.checkpoint(self._now())
                     due = checkpoints.next_after(self.time)
             watch.call(self.time)
-            if self.time < end and watch.is_over():
+            if self.time < end and anywhere(self.model.processes, int(watch.is_over())):
                 self._end_early(watch.reason)
                 return
             if self.time < end:
@@ -372,18 +369,31 @@ class Simulation:
         if self.stepper.unsound:
             if before is not None:
                 self._explain_by_vertices(before, start, event, taken)
-            raise RunError(
-                f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the "
-                f"{problem_with_state(self.mesh, self.state)}; "
-                f"the Courant number was {self.initial_courant_number:.3g} at the start: where that is above "
-                f"{self._stepping.default_courant_number:.3g}, a smaller time step than "
-                f"{self.configuration.time_step:g} s helps"
-            )
+            self.model.processes.together(self._require_sound)
+            raise RunError(self._failure("state is unsound"))
+
+    def _require_sound(self) -> None:
+        problem = problem_with_state(self.mesh, self.state, self.model.processes)
+        if problem:
+            raise RunError(self._failure(problem))
+
+    def _failure(self, problem: str) -> str:
+        """The `problem` of the present state in a sentence."""
+        return (
+            f"at day {self.time / SECONDS_PER_DAY:.3f}, step {self.steps}, the {problem}; "
+            f"the Courant number was {self.initial_courant_number:.3g} at the start: where that is above "
+            f"{self._stepping.default_courant_number:.3g}, a smaller time step than "
+            f"{self.configuration.time_step:g} s helps"
+        )
 
     def _explain_by_vertices(self, before: State, time: float, event: float, steps: int) -> None:
         """Repeat the last `steps` steps from `before`; raise `RunError` if a vertex goes wrong first."""
+        processes = self.model.processes
         for step in range(self.steps - steps + 1, self.steps + 1):
             time, _ = self.stepper.advance(before, time, event, self.configuration.time_step, 1)
-            problem = problem_at_vertices(self.model.closed, before.thickness)
-            if problem:
-                raise RunError(f"at day {time / SECONDS_PER_DAY:.3f}, step {step}, the {problem}")
+            processes.together(partial(self._require_sound_vertices, before.thickness, time, step))
+
+    def _require_sound_vertices(self, thickness: Array, time: float, step: int) -> None:
+        problem = problem_at_vertices(self.model.closed, thickness, self.model.processes)
+        if problem:
+            raise RunError(f"at day {time / SECONDS_PER_DAY:.3f}, step {step}, the {problem}")

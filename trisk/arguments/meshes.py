@@ -1,5 +1,6 @@
 """The mesh that a command runs on, read or generated."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import typer
@@ -28,15 +29,40 @@ def chosen_mesh(mesh_file: Path | None, cells: int | None, recompute_metrics: bo
         return generate_mesh(request, show).mesh
 
 
-def mesh_of_run(directory: Path, cells: int | None) -> VoronoiMesh | None:
-    """The mesh of the run in the directory, None if there is none; a run continues on it without being told.
+@dataclass(frozen=True)
+class MeshSource:
+    """Where the mesh of a run comes from, as the options of the command say: a file, or generation.
 
-    Raises `MeshError` if `cells` is given and the mesh has another number of cells.
+    A run to be resumed goes on with the mesh in its directory, `of_run`, without being told; that of a directory
+    without one comes from the options. `mesh` raises `MeshError` if `cells` is given and that mesh has another number.
     """
+
+    file: Path | None
+    cells: int | None
+    recompute_metrics: bool
+    quiet: bool
+    of_run: Path | None = None
+
+    @property
+    def unchanged_file(self) -> Path | None:
+        """The file whose mesh the run takes as it is, if there is one."""
+        if self.of_run is not None:
+            return None if self.cells is not None else self.of_run
+        return None if self.recompute_metrics or self.cells is not None else self.file
+
+    def mesh(self) -> VoronoiMesh:
+        """The mesh, read or generated."""
+        if self.of_run is None:
+            return chosen_mesh(self.file, self.cells, self.recompute_metrics, self.quiet)
+        mesh = read_mesh(self.of_run)
+        if self.cells is not None and self.cells != mesh.n_cells:
+            raise MeshError(
+                f"{self.of_run} has {mesh.n_cells} cells, not {self.cells}; give the same options, or another directory"
+            )
+        return mesh
+
+
+def mesh_file_of_run(directory: Path) -> Path | None:
+    """The mesh file of the run in the directory; None if there is none."""
     path = directory / MESH_FILE
-    if not path.is_file():
-        return None
-    mesh = read_mesh(path)
-    if cells is not None and cells != mesh.n_cells:
-        raise MeshError(f"{path} has {mesh.n_cells} cells, not {cells}; give the same options, or another directory")
-    return mesh
+    return path if path.is_file() else None

@@ -75,7 +75,8 @@ def run(
 ) -> None:
     """Run a test case and write snapshots and diagnostics.
 
-    Ctrl-C and SIGTERM stop the run and leave a checkpoint.
+    Ctrl-C and SIGTERM stop the run and leave a checkpoint. Under mpiexec, as many processes share the run, whose files
+    are the same.
     """
     from cases import find_case
     from cases.parameters import split_settings
@@ -84,8 +85,10 @@ def run(
     from swe.diagnostics.outputs import chosen_fields
     from swe.errors import InputError
     from swe.output.recorder import days_of, fields_of, run_to_go_on_with
+    from swe.run.composition import rings_needed
     from swe.tiles.fused import why_not_fused
-    from trisk.arguments.meshes import chosen_mesh, mesh_of_run
+    from trisk.arguments.meshes import MeshSource, mesh_file_of_run
+    from trisk.arguments.shared import processes_with_mesh
     from trisk.report.summaries import print_run
 
     chosen = find_case(case, split_settings(settings or ()))
@@ -102,7 +105,8 @@ def run(
         "upwinding": upwinding,
     }
     # Refuse what can be refused before a mesh is made in vain.
-    Options(**options).require_suitable(chosen.name, chosen.prescribed_wind)
+    asked = Options(**options)
+    asked.require_suitable(chosen.name, chosen.prescribed_wind)
     before = run_to_go_on_with(output, force, resume)
     if days is None:
         days = chosen.recommended_days if before is None else days_of(before, output)
@@ -112,21 +116,17 @@ def run(
         raise InputError(f"the run is to last {days:g} days; give a number above 0")
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
-    known = mesh_of_run(output, cells) if resume and mesh_file is None else None
-    simulation = Simulation(
-        known or chosen_mesh(mesh_file, cells, recompute_metrics, quiet),
-        chosen,
-        output,
-        fields=names,
-        overwrite=force,
-        resume=resume,
-        **options,
-    )
-    if not quiet and simulation.loops == "plain":
-        typer.echo(
-            f"{why_not_fused(simulation.model, integrator)}: plain loops take the steps, at several times the cost",
-            err=True,
+    of_run = mesh_file_of_run(output) if resume and mesh_file is None else None
+    source = MeshSource(mesh_file, cells, recompute_metrics, quiet, of_run)
+    with processes_with_mesh(source, output, chosen.radius, rings_needed(asked)) as (mesh, processes):
+        simulation = Simulation(
+            mesh, chosen, output, fields=names, overwrite=force, resume=resume, processes=processes, **options
         )
-    simulation.run(until=days, progress=not quiet)
-    if not quiet:
-        print_run(output)
+        if not quiet and simulation.loops == "plain":
+            typer.echo(
+                f"{why_not_fused(simulation.model, integrator)}: plain loops take the steps, at several times the cost",
+                err=True,
+            )
+        simulation.run(until=days, progress=not quiet)
+        if not quiet and processes.first:
+            print_run(output)

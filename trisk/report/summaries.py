@@ -2,6 +2,7 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import typer
 from rich.console import Console
@@ -47,7 +48,7 @@ def print_run(directory: Path) -> None:
     last = {name: float(values[-1]) for name, values in series.items()}
     rows = [
         ("status", record["status"]),
-        ("cells, threads", f"{record['cells']}, {record['threads']}"),
+        *_size_of(record),
         ("day reached", f"{record['day_reached']:g}"),
         ("time step, steps", f"{record['configuration']['time_step']:g} s, {record['steps']}"),
         ("wall-clock time", f"{record['wall_seconds']:.1f} s"),
@@ -61,6 +62,14 @@ def print_run(directory: Path) -> None:
         ("files", str(directory)),
     ]
     _print_table(f"Run of {record['case']}", rows)
+
+
+def _size_of(record: dict[str, Any]) -> list[tuple[str, str]]:
+    """Cells and what they were divided among, as a row."""
+    cells, processes, threads = record["cells"], record.get("processes", 1), record["threads"]
+    if processes == 1:
+        return [("cells, threads", f"{cells}, {threads}")]
+    return [("cells, processes, threads of each", f"{cells}, {processes}, {threads}")]
 
 
 def _print_table(title: str, rows: list[tuple[str, str]]) -> None:

@@ -8,9 +8,8 @@ import pytest
 
 from cases import Williamson5
 from mesh import VoronoiMesh
-from mesh.files import io
+from mesh.files import io, whole_mesh
 from swe import Simulation
-from swe.output import description
 
 
 def test_a_run_hashes_its_mesh_once(small_mesh: VoronoiMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -22,7 +21,7 @@ def test_a_run_hashes_its_mesh_once(small_mesh: VoronoiMesh, tmp_path: Path, mon
         return true_hash(mesh)
 
     monkeypatch.setattr(io, "mesh_hash", counted)
-    monkeypatch.setattr(description, "mesh_hash", counted)
+    monkeypatch.setattr(whole_mesh, "mesh_hash", counted)
     simulation = Simulation(small_mesh, Williamson5(), tmp_path)
     simulation.run(days=0.25, progress=False)
     assert len(hashed) == 1

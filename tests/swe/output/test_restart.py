@@ -247,6 +247,7 @@ def test_a_second_signal_stops_at_once(icosahedral_mesh: VoronoiMesh, tmp_path: 
     handler = signal.getsignal(signal.SIGINT)
     with stop_requests() as request:
         os.kill(os.getpid(), signal.SIGINT)
+        request.listen()
         assert request.signal == signal.SIGINT
         with pytest.raises(KeyboardInterrupt):
             os.kill(os.getpid(), signal.SIGINT)
@@ -322,6 +323,7 @@ def test_signals_that_are_ignored_or_come_too_late(icosahedral_mesh: VoronoiMesh
     try:
         with stop_requests() as request:
             os.kill(os.getpid(), signal.SIGINT)
+            request.listen()
             assert request.signal is None
         assert signal.getsignal(signal.SIGINT) == signal.SIG_IGN
     finally:

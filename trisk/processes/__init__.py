@@ -1,0 +1,1 @@
+"""The command under mpiexec: one of several processes that end together."""
