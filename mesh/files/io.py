@@ -2,6 +2,7 @@
 
 import hashlib
 import warnings
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,7 +12,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
+from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshOutline, MeshVariable, dimension_sizes
 from mesh.density.record import define_generation, fill_generation, read_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
@@ -27,6 +28,9 @@ STANDARD_NAMES = {"lon": "longitude", "lat": "latitude"}
 
 SINGLE_DIMENSIONS = ("nVertLevels", "nTracers")
 """Of length 1: VTK's reader looks for the first, MPAS's shallow-water core for both. No array of a mesh has them."""
+
+Slabs = Callable[[str], Iterable[NDArray]]
+"""The array of this name, as consecutive rows of it."""
 
 Generation = tuple[str, str, NDArray[np.bool_] | None]
 """Name and source of the density that a mesh was generated for, and which of its generators were held."""
@@ -55,21 +59,27 @@ def write_mesh(
     `history` tells how the mesh was made; `known_hash` is its `mesh_hash`, where that is known. A mesh that has passed
     validation as it is gets the stamp of `mesh.files.stamp`. Raises `MeshError` where the file cannot be written.
     """
-    path = Path(path)
     require_format(file_format)
+    identity = known_hash or mesh_hash(mesh)
+    write_arrays(mesh, whole_arrays(mesh), Path(path), history, file_format, identity, is_validated(mesh))
+
+
+def write_arrays(
+    mesh: MeshOutline, slabs: Slabs, path: Path, history: str, file_format: str, identity: str, validated: bool
+) -> None:
+    """Write a mesh file of arrays that come in `slabs`; `identity` is their hash, the stamp if they are `validated`."""
     try:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             history = f"{stamp}: {history or 'written by trisk'}"
             with definitions(file):
                 file.createDimension("Time", None)  # of no length; some readers of the format ask for it
-                identity = known_hash or mesh_hash(mesh)
                 file.setncatts(mesh_attributes(mesh, history, identity))
-                if is_validated(mesh):
+                if validated:
                     file.setncatts(stamp_attributes(identity))
                 define_mesh_variables(file, mesh)
                 define_generation(file, mesh)
-            fill_mesh_variables(file, mesh)
+            fill_variables(file, mesh, slabs)
             fill_generation(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
@@ -82,7 +92,7 @@ def require_format(file_format: str) -> None:
         raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
 
 
-def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str, object]:
+def mesh_attributes(mesh: MeshOutline, history: str, identity: str) -> dict[str, object]:
     """Global attributes that MPAS readers expect; `identity` is the hash of the mesh."""
     return {
         "on_a_sphere": "YES",
@@ -97,7 +107,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str,
     }
 
 
-def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
+def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: frozenset[str] | None = None) -> None:
     """Define the mesh's dimensions in an open file and its arrays, or those in `names` only."""
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
@@ -115,12 +125,24 @@ def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: froze
 
 def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
     """Write what `define_mesh_variables` has defined."""
+    fill_variables(file, mesh, whole_arrays(mesh), names)
+
+
+def whole_arrays(mesh: VoronoiMesh) -> Slabs:
+    """The arrays of a mesh in memory, each in one slab."""
+    return lambda name: [getattr(mesh, name)]
+
+
+def fill_variables(file: netCDF4.Dataset, mesh: MeshOutline, slabs: Slabs, names: frozenset[str] | None = None) -> None:
+    """Write what `define_mesh_variables` has defined, of arrays that come in `slabs`."""
     sizes = dimension_sizes(mesh)
     for place, dimension in PLACES.items():
-        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1)
+        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1, dtype=np.int32)
     for variable in _variables(names):
-        values = getattr(mesh, variable.name)
-        file[variable.file_name][:] = values + 1 if variable.is_index else values
+        target, start = file[variable.file_name], 0
+        for values in slabs(variable.name):
+            target[start : start + len(values)] = values + 1 if variable.is_index else values
+            start += len(values)
 
 
 def _variables(names: frozenset[str] | None) -> list[MeshVariable]:

@@ -18,6 +18,8 @@ from mesh.safe_files import dataset
 SIZES = {"two": 2, "vertex_degree": 3}
 """Of dimensions that have one size in all meshes."""
 
+EVERY_ROW = slice(None)
+
 LARGEST_INDEX = np.iinfo(np.int32).max - 1
 
 SPARE = frozenset(
@@ -69,7 +71,7 @@ def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> 
         raise MeshError("the mesh is not on a sphere (on_a_sphere is not YES); only global meshes are supported")
     arrays = {}
     for variable in MESH_VARIABLES:
-        values = _read(file, variable) if names is None or variable.name in names else None
+        values = read_variable(file, variable) if names is None or variable.name in names else None
         if values is not None:
             arrays[variable.name] = values
     sources = [file.variables[name] for name in ("xCell", "yCell", "zCell") if name in file.variables]
@@ -83,8 +85,8 @@ def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> 
     )
 
 
-def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
-    """One array; None where it is absent, or spare and unreadable."""
+def read_variable(file: netCDF4.Dataset, variable: MeshVariable, rows: slice = EVERY_ROW) -> NDArray | None:
+    """One array, or some rows of it; None where it is absent, or spare and unreadable."""
     if variable.file_name not in file.variables:
         return None
     source = file.variables[variable.file_name]
@@ -93,7 +95,7 @@ def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
         return None
     if problem:
         raise MeshError(f"{variable.file_name} {problem}")
-    values = np.asarray(source[:])
+    values = np.asarray(source[rows])
     if variable.integer:
         return _whole_numbers(values, 1 if variable.is_index else 0)
     numbers = np.ascontiguousarray(values, dtype=np.float64)
