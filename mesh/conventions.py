@@ -1,8 +1,10 @@
 """One table: what every mesh array is called in a file, where it lives, and what it means."""
 
 from dataclasses import dataclass
+from typing import Protocol
 
-from mesh.voronoi_mesh import Topology
+import numpy as np
+from numpy.typing import NDArray
 
 DIMENSIONS = {
     "n_cells": "nCells",
@@ -15,7 +17,47 @@ DIMENSIONS = {
 }
 
 
-def dimension_sizes(mesh: Topology) -> dict[str, int]:
+class MeshSizes(Protocol):
+    """Numbers of the entities of a mesh, as `Topology` has them."""
+
+    @property
+    def n_cells(self) -> int:
+        """Number of cells."""
+
+    @property
+    def n_edges(self) -> int:
+        """Number of edges."""
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices."""
+
+    @property
+    def max_edges(self) -> int:
+        """Width of the rings of cells."""
+
+
+class MeshOutline(MeshSizes, Protocol):
+    """All of a mesh but its arrays, as `VoronoiMesh` has it."""
+
+    @property
+    def sphere_radius(self) -> float:
+        """Radius of the sphere, metres."""
+
+    @property
+    def density_name(self) -> str:
+        """Name of the density that the mesh was generated for."""
+
+    @property
+    def density_source(self) -> str:
+        """Where that density is found."""
+
+    @property
+    def fixed_cells(self) -> NDArray[np.bool_] | None:
+        """Generators that were held (n_cells,), None if none were."""
+
+
+def dimension_sizes(mesh: MeshSizes) -> dict[str, int]:
     """Size of every dimension of a mesh."""
     return {
         "n_cells": mesh.n_cells,

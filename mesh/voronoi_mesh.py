@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
+from mesh.validated import is_validated, remember_validated
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +154,10 @@ class VoronoiMesh(Metrics, Topology):
         factor = radius / self.sphere_radius
         lengths = {name: getattr(self, name) * factor for name in LENGTH_NAMES}
         areas = {name: getattr(self, name) * factor**2 for name in AREA_NAMES}
-        return replace(self, sphere_radius=float(radius), **lengths, **areas)
+        scaled = replace(self, sphere_radius=float(radius), **lengths, **areas)
+        if is_validated(self):
+            remember_validated(scaled)
+        return scaled
 
 
 TOPOLOGY_NAMES = tuple(field.name for field in fields(Topology))

@@ -11,6 +11,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from mesh.conventions import MeshOutline
 from mesh.density.gridded import FileDensity, Shaping, read_density
 from mesh.density.named import NAMED, Density, uniform
 from mesh.density.scattered import density_from_cells
@@ -87,7 +88,7 @@ def _from_source(source: str, name: str) -> tuple[Density | None, str]:
     return None, f"unknown, since the density was {variable} of {name}, which is missing or has changed since"
 
 
-def define_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
+def define_generation(file: netCDF4.Dataset, mesh: MeshOutline) -> None:
     """Define in an open mesh file the source of a density from a file, and which generators were held fixed."""
     if mesh.density_source:
         file.density_source = mesh.density_source
@@ -96,7 +97,7 @@ def define_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
         fixed.setncatts({"units": "1", "long_name": "1 where the generator was held while others moved, 0 elsewhere"})
 
 
-def fill_generation(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
+def fill_generation(file: netCDF4.Dataset, mesh: MeshOutline) -> None:
     """Write what `define_generation` has defined."""
     if mesh.fixed_cells is not None:
         file[FIXED_VARIABLE][:] = mesh.fixed_cells

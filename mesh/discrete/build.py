@@ -10,6 +10,7 @@ from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError
 from mesh.geometry.sphere import normalize
 from mesh.triangulation.delaunay import delaunay
+from mesh.validated import remember_validated
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
 
 
@@ -40,4 +41,5 @@ def mesh_from_points(
         density_name=density_name,
     )
     validate_mesh(mesh, fresh_metrics=True)
+    remember_validated(mesh)
     return mesh

@@ -17,6 +17,9 @@ from mesh.errors import MeshError, require
 from mesh.geometry.sphere import dot, normalize
 from mesh.voronoi_mesh import Metrics, Topology, VoronoiMesh
 
+RULES = 1
+"""Version of what a mesh must fulfil: to be raised when that changes, so that older files are validated anew."""
+
 OWN_TOLERANCE = 1e-11
 """Largest residual of meshes made here."""
 

@@ -12,7 +12,7 @@ from mesh.discrete.metrics import compute_metrics
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, check_values, require_on_sphere, require_small
 from mesh.errors import MeshError, require
 from mesh.files.arrange import arrange_kites, arrange_weights, arranged_topology, reordered, topology_in_order
-from mesh.files.mesh_file import SPARE, FileContent
+from mesh.files.mesh_file import SPARE, FileContent, fill_rings
 from mesh.geometry.angles import TURN, eastward
 from mesh.geometry.sphere import dot, from_lonlat, normalize
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
@@ -57,6 +57,7 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     itself, or where metrics that the solver uses are not those of the generators.
     """
     arrays, changes = dict(content.arrays), FileChanges()
+    fill_rings(arrays)
     points, radius = _generators(arrays, content.radius, changes)
     topology = _topology(arrays, points, changes)
     exact = compute_metrics(points, topology)
@@ -86,7 +87,7 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
         for name in GENERATORS:
             require(np.isfinite(arrays[name]), "cells", f"{BY_NAME[name].file_name} is not a finite number")
         distance = np.sqrt(dot(points, points))
-        radius = _positive(attribute)
+        radius = positive_number(attribute)
         if radius is None or np.any(np.abs(distance / radius - 1.0) > OUTSIDE_TOLERANCE):
             radius = _radius_of(points, distance, attribute, changes)
         return _unit_vectors(points, distance), radius
@@ -98,7 +99,7 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
     require(np.isfinite(longitude), "cells", "lonCell is not a finite number")
     require(np.isfinite(latitude), "cells", "latCell is not a finite number")
     require(np.abs(latitude) <= 0.5 * np.pi + OUTSIDE_TOLERANCE, "cells", "latCell is beyond a pole (radians)")
-    radius = _positive(attribute)
+    radius = positive_number(attribute)
     if radius is None:
         radius = 1.0
         changes.said.append("without a sphere_radius the sphere is taken to have radius 1")
@@ -111,7 +112,7 @@ def _unit_vectors(points: Array, distance: Array) -> Array:
     return np.where(there[:, None], points, normalize(points))
 
 
-def _positive(attribute: object) -> float | None:
+def positive_number(attribute: object) -> float | None:
     """The attribute as a positive number, None if it is not one."""
     try:
         number = float(attribute)  # type: ignore[arg-type]

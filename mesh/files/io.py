@@ -2,6 +2,7 @@
 
 import hashlib
 import warnings
+from collections.abc import Callable, Iterable
 from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
@@ -11,13 +12,15 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshVariable, dimension_sizes
+from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshOutline, MeshVariable, dimension_sizes
 from mesh.density.record import define_generation, fill_generation, read_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
-from mesh.files.assembly import assembled_mesh
+from mesh.files.assembly import assembled_mesh, positive_number
 from mesh.files.mesh_file import FileContent, opened_mesh_file, read_content
+from mesh.files.stamp import stamp_attributes
 from mesh.safe_files import AnyPath, dataset, definitions, written_aside
+from mesh.validated import is_validated, remember_validated
 from mesh.voronoi_mesh import VoronoiMesh
 
 PLACES = {"cell": "n_cells", "edge": "n_edges", "vertex": "n_vertices"}
@@ -25,6 +28,12 @@ STANDARD_NAMES = {"lon": "longitude", "lat": "latitude"}
 
 SINGLE_DIMENSIONS = ("nVertLevels", "nTracers")
 """Of length 1: VTK's reader looks for the first, MPAS's shallow-water core for both. No array of a mesh has them."""
+
+Slabs = Callable[[str], Iterable[NDArray]]
+"""The array of this name, as consecutive rows of it."""
+
+Generation = tuple[str, str, NDArray[np.bool_] | None]
+"""Name and source of the density that a mesh was generated for, and which of its generators were held."""
 
 FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
     "netcdf4": "NETCDF4",
@@ -38,7 +47,7 @@ def mesh_hash(mesh: VoronoiMesh) -> str:
     """SHA-256, in hexadecimal, of every array of the mesh and its radius."""
     digest = hashlib.sha256(np.float64(mesh.sphere_radius).tobytes())
     for variable in MESH_VARIABLES:
-        digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).tobytes())
+        digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).reshape(-1).data)
     return digest.hexdigest()
 
 
@@ -47,21 +56,30 @@ def write_mesh(
 ) -> None:
     """Write an MPAS mesh file (MPAS Mesh Specification 1.0) in one of `FORMATS`.
 
-    `history` tells how the mesh was made; `known_hash` is its `mesh_hash`, where that is known. Raises `MeshError`
-    where the file cannot be written.
+    `history` tells how the mesh was made; `known_hash` is its `mesh_hash`, where that is known. A mesh that has passed
+    validation as it is gets the stamp of `mesh.files.stamp`. Raises `MeshError` where the file cannot be written.
     """
-    path = Path(path)
     require_format(file_format)
+    identity = known_hash or mesh_hash(mesh)
+    write_arrays(mesh, whole_arrays(mesh), Path(path), history, file_format, identity, is_validated(mesh))
+
+
+def write_arrays(
+    mesh: MeshOutline, slabs: Slabs, path: Path, history: str, file_format: str, identity: str, validated: bool
+) -> None:
+    """Write a mesh file of arrays that come in `slabs`; `identity` is their hash, the stamp if they are `validated`."""
     try:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
             history = f"{stamp}: {history or 'written by trisk'}"
             with definitions(file):
                 file.createDimension("Time", None)  # of no length; some readers of the format ask for it
-                file.setncatts(mesh_attributes(mesh, history, known_hash or mesh_hash(mesh)))
+                file.setncatts(mesh_attributes(mesh, history, identity))
+                if validated:
+                    file.setncatts(stamp_attributes(identity))
                 define_mesh_variables(file, mesh)
                 define_generation(file, mesh)
-            fill_mesh_variables(file, mesh)
+            fill_variables(file, mesh, slabs)
             fill_generation(file, mesh)
     except (OSError, RuntimeError) as error:
         reason = getattr(error, "strerror", None) or error
@@ -74,7 +92,7 @@ def require_format(file_format: str) -> None:
         raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
 
 
-def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str, object]:
+def mesh_attributes(mesh: MeshOutline, history: str, identity: str) -> dict[str, object]:
     """Global attributes that MPAS readers expect; `identity` is the hash of the mesh."""
     return {
         "on_a_sphere": "YES",
@@ -89,7 +107,7 @@ def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str,
     }
 
 
-def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
+def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: frozenset[str] | None = None) -> None:
     """Define the mesh's dimensions in an open file and its arrays, or those in `names` only."""
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
@@ -107,12 +125,24 @@ def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: froze
 
 def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
     """Write what `define_mesh_variables` has defined."""
+    fill_variables(file, mesh, whole_arrays(mesh), names)
+
+
+def whole_arrays(mesh: VoronoiMesh) -> Slabs:
+    """The arrays of a mesh in memory, each in one slab."""
+    return lambda name: [getattr(mesh, name)]
+
+
+def fill_variables(file: netCDF4.Dataset, mesh: MeshOutline, slabs: Slabs, names: frozenset[str] | None = None) -> None:
+    """Write what `define_mesh_variables` has defined, of arrays that come in `slabs`."""
     sizes = dimension_sizes(mesh)
     for place, dimension in PLACES.items():
-        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1)
+        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1, dtype=np.int32)
     for variable in _variables(names):
-        values = getattr(mesh, variable.name)
-        file[variable.file_name][:] = values + 1 if variable.is_index else values
+        target, start = file[variable.file_name], 0
+        for values in slabs(variable.name):
+            target[start : start + len(values)] = values + 1 if variable.is_index else values
+            start += len(values)
 
 
 def _variables(names: frozenset[str] | None) -> list[MeshVariable]:
@@ -130,6 +160,8 @@ def _coordinates(variable: MeshVariable) -> dict[str, str]:
 def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
     """Read and validate an MPAS mesh file of any origin: classic, 64-bit or NetCDF-4, of any sphere radius.
 
+    A file that holds exactly what was validated before trisk wrote it is not validated again.
+
     Rings in another order are sorted, and what is missing or no step depends on is rebuilt from the generators and
     triangles. With `recompute_metrics`, all lengths, areas, kites, angles and weights are. Warns with `MeshWarning`, in
     one line, of what was changed and where the identities of the mesh hold to `OUTSIDE_TOLERANCE` but not to
@@ -140,22 +172,44 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
         raise MeshError(f"{path}: not a file; give an MPAS mesh file")
     try:
         content, generation = _read(path)
+        stamped = None if recompute_metrics else _stamped_mesh(content)
+        if stamped is not None:
+            mesh = _made_for(stamped, generation)
+            remember_validated(mesh)
+            return mesh
         mesh, changes = assembled_mesh(content, recompute_metrics)
         residuals = validate_metrics(mesh, None, OUTSIDE_TOLERANCE)
     except MeshError as error:
         raise MeshError(f"{path}: {error}") from error
-    name, source, fixed = generation
-    mesh = replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
+    mesh = _made_for(mesh, generation)
     said = [changes.in_words] if changes.in_words else []
     worst = max(residuals, key=lambda name: residuals[name])
     if residuals[worst] > OWN_TOLERANCE:
         said.append(f"{worst} holds only to {residuals[worst]:.1e}; recompute the metrics for better conservation")
     if said:
         warnings.warn(f"{path}: {'; '.join(said)}", MeshWarning, stacklevel=2)
+    else:
+        remember_validated(mesh)
     return mesh
 
 
-def _read(path: Path) -> tuple[FileContent, tuple[str, str, NDArray[np.bool_] | None]]:
+def _stamped_mesh(content: FileContent) -> VoronoiMesh | None:
+    """The mesh of a file as it is, None unless the hash of its arrays is that of the stamp."""
+    radius = positive_number(content.radius)
+    whole = len(content.arrays) == len(MESH_VARIABLES) and not content.single_precision
+    if not content.stamp or radius is None or not whole:
+        return None
+    mesh = VoronoiMesh(**content.arrays, sphere_radius=radius)  # type: ignore[arg-type]
+    return mesh if mesh_hash(mesh) == content.stamp else None
+
+
+def _made_for(mesh: VoronoiMesh, generation: Generation) -> VoronoiMesh:
+    """The mesh with what its file says of how it was generated."""
+    name, source, fixed = generation
+    return replace(mesh, density_name=name, density_source=source, fixed_cells=fixed)
+
+
+def _read(path: Path) -> tuple[FileContent, Generation]:
     """The content of a mesh file, and how the mesh was generated."""
     with opened_mesh_file(path) as file:
         content = read_content(file)

@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError
+from mesh.files.stamp import stamp_of
 from mesh.safe_files import dataset
 
 SIZES = {"two": 2, "vertex_degree": 3}
 """Of dimensions that have one size in all meshes."""
+
+EVERY_ROW = slice(None)
 
 LARGEST_INDEX = np.iinfo(np.int32).max - 1
 
@@ -32,14 +35,16 @@ SPARE = frozenset(
 class FileContent:
     """The arrays that a file holds, by their names in memory, and what its attributes say.
 
-    `radius` is as the attribute has it, None where there is none. `single_precision` says whether coordinates of the
-    generators were rounded to 32 bits.
+    What stands beyond the rings is what the file has there. `radius` is as the attribute has it, None where there is
+    none. `single_precision` says whether coordinates of the generators were rounded to 32 bits. `stamp` is that of a
+    validated mesh (`mesh.files.stamp`), empty where there is none.
     """
 
     arrays: dict[str, NDArray]
     radius: object
     n_cells: int
     single_precision: bool
+    stamp: str
 
 
 @contextmanager
@@ -66,10 +71,9 @@ def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> 
         raise MeshError("the mesh is not on a sphere (on_a_sphere is not YES); only global meshes are supported")
     arrays = {}
     for variable in MESH_VARIABLES:
-        values = _read(file, variable) if names is None or variable.name in names else None
+        values = read_variable(file, variable) if names is None or variable.name in names else None
         if values is not None:
             arrays[variable.name] = values
-    _fill_rings(arrays)
     sources = [file.variables[name] for name in ("xCell", "yCell", "zCell") if name in file.variables]
     sources = sources or [file.variables[name] for name in ("lonCell", "latCell") if name in file.variables]
     return FileContent(
@@ -77,11 +81,12 @@ def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> 
         radius=getattr(file, "sphere_radius", None),
         n_cells=len(file.dimensions["nCells"]) if "nCells" in file.dimensions else 0,
         single_precision=any(source.dtype == np.float32 for source in sources),
+        stamp=stamp_of(file),
     )
 
 
-def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
-    """One array; None where it is absent, or spare and unreadable."""
+def read_variable(file: netCDF4.Dataset, variable: MeshVariable, rows: slice = EVERY_ROW) -> NDArray | None:
+    """One array, or some rows of it; None where it is absent, or spare and unreadable."""
     if variable.file_name not in file.variables:
         return None
     source = file.variables[variable.file_name]
@@ -90,7 +95,7 @@ def _read(file: netCDF4.Dataset, variable: MeshVariable) -> NDArray | None:
         return None
     if problem:
         raise MeshError(f"{variable.file_name} {problem}")
-    values = np.asarray(source[:])
+    values = np.asarray(source[rows])
     if variable.integer:
         return _whole_numbers(values, 1 if variable.is_index else 0)
     numbers = np.ascontiguousarray(values, dtype=np.float64)
@@ -115,18 +120,26 @@ def _in_degrees(source: netCDF4.Variable) -> bool:
 
 
 def _whole_numbers(values: NDArray, first: int) -> NDArray:
-    """Values of any type as int32 that count from 0 where the file counts from `first`; -1 what is no whole number."""
+    """Values of any type as int32 that count from 0 where the file counts from `first`; -1 what is no whole number.
+
+    `values` may be changed in place.
+    """
     if values.dtype.kind == "f":
         with np.errstate(invalid="ignore"):
             values = np.where(np.abs(values) <= LARGEST_INDEX, values, np.nan)
             values = np.where(values == np.rint(values), values, first - 1.0)
-    elif values.dtype.itemsize >= np.dtype(np.int32).itemsize:
+    elif (
+        values.dtype.itemsize >= np.dtype(np.int32).itemsize
+        and values.size
+        and not 0 <= values.min() <= values.max() <= LARGEST_INDEX
+    ):
         values = np.where((values <= LARGEST_INDEX) & (values >= 0), values, first - 1)
-    return np.ascontiguousarray(values, dtype=np.int32) - first
+    numbers = np.ascontiguousarray(values, dtype=np.int32)
+    return np.subtract(numbers, first, out=numbers) if first else numbers
 
 
-def _fill_rings(arrays: dict[str, NDArray]) -> None:
-    """Replace all entries beyond the count of each ring."""
+def fill_rings(arrays: dict[str, NDArray]) -> None:
+    """Replace all entries beyond the count of each ring, by arrays of their own."""
     for count, rings in (
         ("n_edges_on_cell", ("cells_on_cell", "edges_on_cell", "vertices_on_cell")),
         ("n_edges_on_edge", ("edges_on_edge", "weights_on_edge")),

@@ -19,6 +19,7 @@ from mesh.generation.well_centered import GOAL, WellCentered, well_center
 from mesh.geometry.sphere import normalize
 from mesh.mesh_request import MeshRequest
 from mesh.plain import plain_count, plain_number
+from mesh.validated import remember_validated
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -115,7 +116,9 @@ def generate_mesh(
 def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of generators optimised for `density`, which it records."""
     mesh = mesh_from_points(result.points, result.triangles, density, name_of(density))
-    return replace(mesh, density_source=source_of(density), fixed_cells=result.fixed)
+    mesh = replace(mesh, density_source=source_of(density), fixed_cells=result.fixed)
+    remember_validated(mesh)
+    return mesh
 
 
 def _require_one_start(request: MeshRequest, resume: bool) -> None:

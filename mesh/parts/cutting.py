@@ -1,20 +1,20 @@
 """A mesh without some of its cells: a mesh in which neighbours are missing (`mesh.discrete.walls`).
 
-Entities keep their order, and every cell the order of its ring, so that sums round a cell come out the same.
+Entities keep their order, and every cell the order of its ring, so that sums round a cell come out the same. Of the
+whole only rows are asked for (`mesh.parts.mesh_rows`), so that it need not be in memory.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.conventions import MESH_VARIABLES
+from mesh.parts.mesh_rows import MeshRows, RowsInMemory
 from mesh.voronoi_mesh import VoronoiMesh
 
 FILL = -1
-
-PLACES = ("n_cells", "n_edges", "n_vertices")
 
 WEIGHTS = ("n_edges_on_edge", "edges_on_edge", "weights_on_edge")
 """Arrays of the tangential velocity, of which edges beside a missing cell keep those of the other cell alone."""
@@ -29,68 +29,67 @@ class Kept:
     vertices: Index
 
 
-def beside(marked: NDArray[np.bool_], neighbours: Index) -> NDArray[np.bool_]:
-    """Which of the `neighbours` (n, k) are there and `marked`."""
-    return np.append(marked, False)[neighbours]
+def around(whole: MeshRows, name: str, cells: Index) -> Index:
+    """Numbers, in ascending order, of what stands in the rings `name` of the `cells` (n,), in ascending order too."""
+    rings, counts = whole.rows(name, cells), whole.rows("n_edges_on_cell", cells)
+    on_ring = np.arange(rings.shape[1]) < counts[:, None]
+    return np.unique(rings[on_ring & (rings >= 0)]).astype(np.intp)
 
 
-def kept_with(mesh: VoronoiMesh, cells: NDArray[np.bool_]) -> Kept:
-    """The marked `cells` (n_cells,) and what touches them."""
-    return Kept(
-        np.flatnonzero(cells),
-        np.flatnonzero(beside(cells, mesh.cells_on_edge).any(axis=1)),
-        np.flatnonzero(beside(cells, mesh.cells_on_vertex).any(axis=1)),
-    )
+def kept_with(whole: MeshRows, cells: Index) -> Kept:
+    """The `cells` (n,), in ascending order, and what touches them."""
+    return Kept(cells, around(whole, "edges_on_cell", cells), around(whole, "vertices_on_cell", cells))
 
 
 def without_cells(mesh: VoronoiMesh, missing: NDArray[np.bool_]) -> VoronoiMesh:
     """`mesh` without the cells that `missing` (n_cells,) marks, nor edges and vertices that touch none of the rest."""
-    return _reduced(mesh, kept_with(mesh, ~missing), ~missing)
+    whole = RowsInMemory(mesh)
+    return reduced(whole, kept_with(whole, np.flatnonzero(~missing)))
 
 
-def _reduced(mesh: VoronoiMesh, kept: Kept, there: NDArray[np.bool_]) -> VoronoiMesh:
-    """`mesh` with what is `kept` alone; `there` (n_cells,) marks its cells."""
-    numbers = dict(zip(PLACES, (kept.cells, kept.edges, kept.vertices), strict=True))
-    renumbering = {place: _renumbering(chosen, getattr(mesh, place)) for place, chosen in numbers.items()}
+def reduced(whole: MeshRows, kept: Kept) -> VoronoiMesh:
+    """The mesh of what is `kept` of the whole alone."""
+    numbers = {"n_cells": kept.cells, "n_edges": kept.edges, "n_vertices": kept.vertices}
     arrays = {}
     for variable in MESH_VARIABLES:
-        if variable.name in WEIGHTS or getattr(mesh, variable.name) is None:
+        if variable.name in WEIGHTS:
             continue
-        values = getattr(mesh, variable.name)[numbers[variable.dimensions[0]]]
+        values = whole.rows(variable.name, numbers[variable.dimensions[0]])
         if variable.of is not None:
-            values = renumbering[variable.of][values].astype(np.int32)
+            values = _renumbered(values, numbers[variable.of]).astype(np.int32)
         arrays[variable.name] = values
-    cells = mesh.cells_on_vertex[kept.vertices]
-    gone = (cells >= 0) & ~beside(there, cells)
+    gone = (whole.rows("cells_on_vertex", kept.vertices) >= 0) & (arrays["cells_on_vertex"] < 0)
     kites = np.where(gone, 0.0, arrays["kite_areas_on_vertex"])
     area = np.where(gone.any(axis=1), kites.sum(axis=1), arrays["area_triangle"])
     arrays |= {"kite_areas_on_vertex": kites, "area_triangle": area}
-    arrays |= dict(zip(WEIGHTS, _weights(mesh, kept.edges, there, renumbering["n_edges"]), strict=True))
-    fixed = None if mesh.fixed_cells is None else mesh.fixed_cells[kept.cells]
-    return replace(mesh, **{**arrays, "fixed_cells": fixed})
+    arrays |= dict(zip(WEIGHTS, _weights(whole, kept, arrays["cells_on_edge"] >= 0), strict=True))
+    return whole.with_arrays(arrays, kept.cells)
 
 
-def _weights(
-    mesh: VoronoiMesh, edges: Index, there: NDArray[np.bool_], renumbering: Index
-) -> tuple[Index, Index, Array]:
-    """`WEIGHTS` of the `edges`, where only the cells that are `there` count."""
-    cells = mesh.cells_on_edge[edges]
-    sizes = np.where(cells >= 0, mesh.n_edges_on_cell[cells] - 1, 0)
-    place, stays = np.arange(mesh.edges_on_edge.shape[1]), beside(there, cells)
+def _weights(whole: MeshRows, kept: Kept, stays: NDArray[np.bool_]) -> tuple[Index, Index, Array]:
+    """`WEIGHTS` of the kept edges, where only those of their cells count that `stays` (n, 2) marks."""
+    cells = whole.rows("cells_on_edge", kept.edges)
+    beside = np.unique(cells[cells >= 0])
+    sizes_beside = whole.rows("n_edges_on_cell", beside)
+    sizes = np.where(cells >= 0, np.append(sizes_beside, 0)[_renumbered(cells, beside)] - 1, 0)
+    around, weights = (whole.rows(name, kept.edges) for name in ("edges_on_edge", "weights_on_edge"))
+    place = np.arange(around.shape[1])
     of_first = place < sizes[:, :1]
     used = (place < sizes.sum(axis=1, keepdims=True)) & np.where(of_first, stays[:, :1], stays[:, 1:])
     order = np.argsort(~used, axis=1, kind="stable")
-    around = np.where(used, renumbering[mesh.edges_on_edge[edges]], FILL)
-    weights = np.where(used, mesh.weights_on_edge[edges], 0.0)
+    around = np.where(used, _renumbered(around, kept.edges), FILL)
     return (
         used.sum(axis=1).astype(np.int32),
         np.take_along_axis(around, order, axis=1).astype(np.int32),
-        np.take_along_axis(weights, order, axis=1),
+        np.take_along_axis(np.where(used, weights, 0.0), order, axis=1),
     )
 
 
-def _renumbering(kept: Index, size: int) -> Index:
-    """New numbers of `size` entities, and of the missing one, which is the last."""
-    numbers = np.full(size + 1, FILL)
-    numbers[kept] = np.arange(len(kept))
-    return numbers
+def _renumbered(values: Index, kept: Index) -> Index:
+    """The places of `values` among the `kept` numbers, in ascending order; -1 for those that are not there."""
+    if not kept.size:
+        return np.full(values.shape, FILL)
+    kept = kept.astype(values.dtype)  # so that no wider copy of the values is made
+    place = np.searchsorted(kept, values)
+    found = kept[np.minimum(place, len(kept) - 1)] == values
+    return np.where(found, place, FILL)

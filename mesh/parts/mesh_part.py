@@ -7,11 +7,11 @@ entity of the whole mesh has one owner.
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from mesh.arrays import Index
 from mesh.errors import MeshError
-from mesh.parts.cutting import beside, kept_with, without_cells
+from mesh.parts.cutting import around, kept_with, reduced
+from mesh.parts.mesh_rows import MeshRows, RowsInMemory
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -67,29 +67,35 @@ def cut_part(mesh: VoronoiMesh, blocks: Index, block: int, rings: int) -> MeshPa
 
     `blocks` (n_cells,) is the block of every cell. Raises `MeshError` if no cell belongs to `block`.
     """
-    if blocks.shape != (mesh.n_cells,):
-        raise MeshError(f"blocks have shape {blocks.shape}, but the mesh needs ({mesh.n_cells},)")
-    own = blocks == block
-    if not own.any():
+    return part_of_rows(RowsInMemory(mesh), blocks, block, rings)
+
+
+def part_of_rows(whole: MeshRows, blocks: Index, block: int, rings: int) -> MeshPart:
+    """What `cut_part` gives, of a mesh that need not be in memory."""
+    if blocks.shape != (whole.n_cells,):
+        raise MeshError(f"blocks have shape {blocks.shape}, but the mesh needs ({whole.n_cells},)")
+    own = np.flatnonzero(blocks == block)
+    if not own.size:
         raise MeshError(f"block {block} has no cells; divide the mesh into fewer blocks")
-    inside = widened(mesh, own, rings)
-    kept = kept_with(mesh, inside)
+    kept = kept_with(whole, widened(whole, own, rings))
     return MeshPart(
-        mesh=without_cells(mesh, ~inside),
+        mesh=reduced(whole, kept),
         block=block,
         cells=kept.cells,
         edges=kept.edges,
         vertices=kept.vertices,
         cell_owner=blocks[kept.cells],
-        edge_owner=_owner(blocks, mesh.cells_on_edge[kept.edges]),
-        vertex_owner=_owner(blocks, mesh.cells_on_vertex[kept.vertices]),
+        edge_owner=_owner(blocks, whole.rows("cells_on_edge", kept.edges)),
+        vertex_owner=_owner(blocks, whole.rows("cells_on_vertex", kept.vertices)),
     )
 
 
-def widened(mesh: VoronoiMesh, cells: NDArray[np.bool_], rings: int) -> NDArray[np.bool_]:
-    """The marked `cells` (n_cells,) and `rings` rings of cells round them."""
+def widened(whole: MeshRows, cells: Index, rings: int) -> Index:
+    """The `cells` (n,) and `rings` rings of cells round them, in ascending order."""
+    outermost = cells
     for _ in range(rings):
-        cells = cells | beside(cells, np.where(mesh.on_ring, mesh.cells_on_cell, -1)).any(axis=1)
+        outermost = np.setdiff1d(around(whole, "cells_on_cell", outermost), cells, assume_unique=True)
+        cells = np.union1d(cells, outermost)
     return cells
 
 

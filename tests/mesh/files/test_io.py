@@ -343,7 +343,7 @@ def test_interrupted_write_leaves_nothing(
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("mesh.files.io.fill_mesh_variables", interrupt)
+    monkeypatch.setattr("mesh.files.io.fill_variables", interrupt)
     with pytest.raises(KeyboardInterrupt):
         write_mesh(icosahedral_mesh, tmp_path / "mesh.nc")
     assert list(tmp_path.iterdir()) == []

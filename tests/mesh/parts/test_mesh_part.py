@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from mesh import VoronoiMesh
 from mesh.arrays import Index
 from mesh.errors import MeshError
 from mesh.parts.cutting import without_cells
-from mesh.parts.mesh_part import MeshPart, cut_part, widened
+from mesh.parts.mesh_part import MeshPart, cut_part
 from tests.cut_mesh import without_cap
 
 BLOCKS = 3
@@ -73,12 +74,21 @@ def test_own_entities_are_those_of_the_whole(mesh: VoronoiMesh) -> None:
             )
 
 
+def within(mesh: VoronoiMesh, marked: NDArray[np.bool_], rings: int) -> NDArray[np.bool_]:
+    """The marked cells (n_cells,), and those that fewer than or as many as `rings` edges lie between."""
+    for _ in range(rings):
+        touched = marked[mesh.cells_on_edge].any(axis=1)
+        marked = marked.copy()
+        marked[mesh.cells_on_edge[touched]] = True
+    return marked
+
+
 def test_halo_is_as_wide_as_asked(icosahedral_mesh: VoronoiMesh) -> None:
     """Neighbours of own cells are there with one ring, theirs with two; edges of the halo lie between two cells."""
     mesh, blocks = icosahedral_mesh, blocks_of(icosahedral_mesh)
     for rings in (0, 1, 2):
         part = cut_part(mesh, blocks, 1, rings)
-        np.testing.assert_array_equal(part.cells, np.flatnonzero(widened(mesh, blocks == 1, rings)))
+        np.testing.assert_array_equal(part.cells, np.flatnonzero(within(mesh, blocks == 1, rings)))
         own = part.mesh.cells_on_cell[part.own_cells][part.mesh.on_ring[part.own_cells]]
         assert (own >= 0).all() == (rings > 0)
         assert len(part.halo_cells) == part.mesh.n_cells - len(part.own_cells)

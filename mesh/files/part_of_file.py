@@ -1,0 +1,59 @@
+"""What can be had from the file of a validated mesh without its being in memory: parts, its hash, a copy of other size.
+
+All of it is, bit for bit, what the mesh in memory gives. Only `scaled_hash_of_file` checks that the arrays are those of
+the stamp; the others take them as they are, and raise `mesh.files.stamped_file.NotValidatedError` where there is none.
+"""
+
+import hashlib
+from pathlib import Path
+
+import numpy as np
+
+from mesh.arrays import Index
+from mesh.conventions import MESH_VARIABLES
+from mesh.files.io import require_format, write_arrays
+from mesh.files.stamped_file import NotValidatedError, opened_stamped_file
+from mesh.parts.mesh_part import MeshPart, part_of_rows
+from mesh.safe_files import AnyPath
+
+
+def read_part(path: AnyPath, blocks: Index, block: int, rings: int) -> MeshPart:
+    """`mesh.parts.mesh_part.cut_part` of the mesh in a file, of which no more than the part is in memory.
+
+    `blocks` (n_cells,) is the block of every cell. Raises `MeshError` if no cell belongs to `block`, and where the file
+    has no stamp or cannot be read.
+    """
+    with opened_stamped_file(path) as whole:
+        return part_of_rows(whole, blocks, block, rings)
+
+
+def scaled_hash_of_file(path: AnyPath, radius: float) -> str | None:
+    """`mesh_hash` of the mesh in a file after `scaled(radius)`; None unless the file holds what its stamp says.
+
+    Reads the file once. Raises `MeshError` where that fails.
+    """
+    try:
+        with opened_stamped_file(path) as mesh:
+            scaled = mesh.scaled(radius)
+            as_it_is, as_scaled = (hashlib.sha256(np.float64(each.sphere_radius).tobytes()) for each in (mesh, scaled))
+            for variable in MESH_VARIABLES:
+                for values in mesh.slabs(variable.name):
+                    as_it_is.update(values.reshape(-1).data)
+                    as_scaled.update(scaled.rescale(variable.name, values).reshape(-1).data)
+            return as_scaled.hexdigest() if as_it_is.hexdigest() == mesh.stamp else None
+    except NotValidatedError:
+        return None
+
+
+def write_scaled_copy(
+    path: AnyPath, target: AnyPath, radius: float, scaled_hash: str, history: str = "", file_format: str = "netcdf4"
+) -> None:
+    """Write what `write_mesh` does of the mesh in a file after `scaled(radius)`, stamped, slab by slab.
+
+    `scaled_hash` is what `scaled_hash_of_file` gives for that radius. Raises `MeshError` where the file has no stamp or
+    cannot be read, or where the copy cannot be written.
+    """
+    require_format(file_format)
+    with opened_stamped_file(path) as mesh:
+        scaled = mesh.scaled(radius)
+        write_arrays(scaled, scaled.slabs, Path(target), history, file_format, scaled_hash, validated=True)
