@@ -1,12 +1,15 @@
 """A whole mesh as what is written of it needs it, wherever its arrays are."""
 
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
-import netCDF4
-
-from mesh.files.io import define_mesh_variables, fill_mesh_variables, mesh_attributes, mesh_hash, read_mesh, write_mesh
+from mesh.conventions import MeshOutline
+from mesh.files.io import Slabs, mesh_hash, whole_arrays, write_mesh
+from mesh.files.part_of_file import write_scaled_copy
+from mesh.files.stamped_file import opened_stamped_file
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -25,14 +28,8 @@ class WholeMesh(Protocol):
     def identity(self) -> str:
         """Its `mesh_hash`."""
 
-    def attributes(self, history: str, identity: str) -> dict[str, object]:
-        """See `mesh_attributes`."""
-
-    def define(self, file: netCDF4.Dataset, names: frozenset[str]) -> None:
-        """See `define_mesh_variables`."""
-
-    def fill(self, file: netCDF4.Dataset, names: frozenset[str]) -> None:
-        """See `fill_mesh_variables`."""
+    def opened(self) -> AbstractContextManager[tuple[MeshOutline, Slabs]]:
+        """What is asked of it to define and fill the variables of a file (`mesh.files.io`)."""
 
     def write(self, path: AnyPath, history: str, identity: str) -> None:
         """Write it to a mesh file, see `write_mesh`; `identity` is its `mesh_hash`."""
@@ -58,17 +55,9 @@ class MeshInMemory:
         """See `WholeMesh`."""
         return mesh_hash(self.mesh)
 
-    def attributes(self, history: str, identity: str) -> dict[str, object]:
+    def opened(self) -> AbstractContextManager[tuple[MeshOutline, Slabs]]:
         """See `WholeMesh`."""
-        return mesh_attributes(self.mesh, history, identity)
-
-    def define(self, file: netCDF4.Dataset, names: frozenset[str]) -> None:
-        """See `WholeMesh`."""
-        define_mesh_variables(file, self.mesh, names)
-
-    def fill(self, file: netCDF4.Dataset, names: frozenset[str]) -> None:
-        """See `WholeMesh`."""
-        fill_mesh_variables(file, self.mesh, names)
+        return nullcontext((self.mesh, whole_arrays(self.mesh)))
 
     def write(self, path: AnyPath, history: str, identity: str) -> None:
         """See `WholeMesh`."""
@@ -77,33 +66,34 @@ class MeshInMemory:
 
 @dataclass(frozen=True)
 class MeshInFile:
-    """INTERIM"""
+    """A `WholeMesh` in a stamped file at `path`, on a sphere of `radius` metres; nobody holds all of it.
+
+    `scaled_hash` is its `mesh_hash` on that sphere (`mesh.files.part_of_file.scaled_hash_of_file`).
+    """
 
     path: Path
     radius: float
-    known: str
+    scaled_hash: str
     n_cells: int
     n_edges: int
 
-    def _mesh(self):
-        return read_mesh(self.path).scaled(self.radius)
-
     def identity(self) -> str:
-        return self.known
+        """See `WholeMesh`."""
+        return self.scaled_hash
 
-    def attributes(self, history: str, identity: str) -> dict[str, object]:
-        return mesh_attributes(self._mesh(), history, identity)
+    @contextmanager
+    def opened(self) -> Iterator[tuple[MeshOutline, Slabs]]:
+        """See `WholeMesh`."""
+        with opened_stamped_file(self.path) as file:
+            scaled = file.scaled(self.radius)
+            yield scaled, scaled.slabs
 
-    def define(self, file, names) -> None:
-        define_mesh_variables(file, self._mesh(), names)
-
-    def fill(self, file, names) -> None:
-        fill_mesh_variables(file, self._mesh(), names)
-
-    def write(self, path, history, identity) -> None:
-        write_mesh(self._mesh(), path, history, known_hash=identity)
+    def write(self, path: AnyPath, history: str, identity: str) -> None:
+        """See `WholeMesh`."""
+        write_scaled_copy(self.path, path, self.radius, identity, history)
 
 
-def mesh_in_file(path, radius, identity):
-    mesh = read_mesh(path)
-    return MeshInFile(path, radius, identity, mesh.n_cells, mesh.n_edges)
+def mesh_in_file(path: Path, radius: float, scaled_hash: str) -> MeshInFile:
+    """The mesh of a stamped file; raises `MeshError` if that cannot be read."""
+    with opened_stamped_file(path) as file:
+        return MeshInFile(path, radius, scaled_hash, file.n_cells, file.n_edges)

@@ -18,6 +18,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.conventions import BY_NAME, COORDINATES
+from mesh.files.io import define_mesh_variables, fill_variables, mesh_attributes
 from mesh.safe_files import dataset, definitions, netcdf_lock, opened_dataset, written_aside
 from swe.diagnostics.budgets import rate_series
 from swe.diagnostics.outputs import FIELDS, PLACES, SERIES, TOPOGRAPHY, Evaluation, Field, Series, diagnostics_row
@@ -57,17 +58,16 @@ def create_history(path: Path, run: RunDescription, description: Mapping[str, An
 
 
 def _create_history(path: Path, run: RunDescription, description: Mapping[str, Any], topography: Array) -> None:
-    mesh = run.mesh
-    with _new_file(path) as file:
-        identity = mesh.attributes("snapshots of a shallow-water run", description["mesh_hash"])
+    with run.mesh.opened() as (mesh, slabs), _new_file(path) as file:
+        identity = mesh_attributes(mesh, "snapshots of a shallow-water run", description["mesh_hash"])
         with definitions(file):
             file.setncatts({**identity, **_attributes(run.model, description)})
-            mesh.define(file, GEOMETRY)
+            define_mesh_variables(file, mesh, GEOMETRY)
             _define_time(file)
             _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
             for name in run.fields:
                 _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
-        mesh.fill(file, GEOMETRY)
+        fill_variables(file, mesh, slabs, GEOMETRY)
         file["topography"][:] = topography
 
 

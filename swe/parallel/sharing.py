@@ -8,8 +8,9 @@ from pathlib import Path
 from mpi4py import MPI
 
 from mesh.errors import MeshError
-from mesh.files.io import mesh_hash, write_mesh
-from mesh.files.part_of_file import blocks_along_curve, hash_of_file, read_part
+from mesh.files.cells_of_file import blocks_along_curve
+from mesh.files.io import mesh_hash, whole_arrays, write_arrays
+from mesh.files.part_of_file import read_part, scaled_hash_of_file
 from mesh.files.whole_mesh import MeshInFile, mesh_in_file
 from mesh.safe_files import remove_leftovers
 from mesh.voronoi_mesh import VoronoiMesh
@@ -69,8 +70,8 @@ def _known(file: Path | None, radius: float) -> MeshInFile | None:
     """The whole mesh of a `file` that trisk has validated; None if it has not."""
     if file is None:
         return None
-    identity, validated = hash_of_file(file, radius)
-    return mesh_in_file(file, radius, identity) if validated else None
+    scaled_hash = scaled_hash_of_file(file, radius)
+    return None if scaled_hash is None else mesh_in_file(file, radius, scaled_hash)
 
 
 def _made(make: Callable[[], VoronoiMesh], place: Path, radius: float, written: list[Path]) -> MeshInFile:
@@ -80,7 +81,8 @@ def _made(make: Callable[[], VoronoiMesh], place: Path, radius: float, written: 
     remove_leftovers(folder, (place.name,))
     path = folder / f".{place.name}.{uuid.uuid4().hex[:8]}.part"
     written.append(path)
-    write_mesh(mesh, path)
+    # It was read or made just now, and no file is known to others before it is.
+    write_arrays(mesh, whole_arrays(mesh), path, "", "netcdf4", mesh_hash(mesh), validated=True)
     return mesh_in_file(path, radius, mesh_hash(mesh.scaled(radius)))
 
 
