@@ -1,14 +1,8 @@
 """Runs on two and three processes have the bits of a run on one: state, derived fields, invariants and rates."""
 
-import importlib.util
 import json
-import os
 import pickle
-import shutil
-import signal
-import subprocess
 import sys
-import uuid
 from pathlib import Path
 from typing import Any
 
@@ -20,16 +14,11 @@ from swe.parallel.exact_sum import exact_sums
 from tests.conftest import random_mesh
 from tests.cut_mesh import without_cap
 from tests.swe.parallel.short_run import fields_of, hash_of, row_of, short_run
+from tests.under_mpiexec import needs_mpi, on_processes
 
-ROOT = Path(__file__).parents[3]
 PROGRAM = Path(__file__).with_name("mpi_program.py")
-MPIEXEC = shutil.which("mpiexec", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]))
-TIMEOUT = 400.0
 
-pytestmark = pytest.mark.skipif(
-    MPIEXEC is None or importlib.util.find_spec("mpi4py") is None,
-    reason="mpi4py or mpiexec is not installed; pip install 'trisk[mpi]' brings both",
-)
+pytestmark = needs_mpi
 
 CONSISTENT = {"scheme": "consistent", "anticipation": 0.5, "dissipation": 1e15}
 QUICK: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}]
@@ -42,49 +31,15 @@ SLOW: list[dict[str, Any]] = [
 ]
 
 
-def on_processes(count: int, mesh: VoronoiMesh, jobs: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
-    """The results of jobs on `count` processes with one thread each; no process is left behind."""
-    assert MPIEXEC is not None
+def results(count: int, mesh: VoronoiMesh, jobs: list[dict[str, Any]], folder: Path) -> list[dict[str, Any]]:
+    """The results of jobs on `count` processes with one thread each."""
     paths = [folder / name for name in ("mesh", "jobs", "results")]
     paths[0].write_bytes(pickle.dumps(mesh))
     paths[1].write_text(json.dumps(jobs))
-    mark = uuid.uuid4().hex
-    program = subprocess.Popen(
-        [MPIEXEC, "-n", str(count), sys.executable, "-m", "mpi4py", str(PROGRAM), *map(str, paths)],
-        env={**os.environ, "NUMBA_NUM_THREADS": "1", "PYTHONPATH": str(ROOT), "TRISK_TEST_MARK": mark},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        start_new_session=True,
-    )
-    try:
-        output, _ = program.communicate(timeout=TIMEOUT)
-    finally:
-        for process in [-program.pid, *marked(mark)]:
-            try:
-                os.kill(process, signal.SIGKILL)
-            except ProcessLookupError:
-                continue
-        program.wait()
-    assert program.returncode == 0, output[-3000:]
+    code, output = on_processes(count, [sys.executable, "-m", "mpi4py", PROGRAM, *paths])
+    assert code == 0, output[-3000:]
     found: list[dict[str, Any]] = json.loads(paths[2].read_text())
     return found
-
-
-def marked(mark: str) -> list[int]:
-    """Processes that have `mark` in their environment, where the system tells."""
-    return [
-        int(path.parent.name)
-        for path in Path("/proc").glob("[0-9]*/environ")
-        if os.access(path, os.R_OK) and mark.encode() in environment(path)
-    ]
-
-
-def environment(path: Path) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError:  # the process has ended
-        return b""
 
 
 def of_one(mesh: VoronoiMesh, options: dict[str, Any]) -> dict[str, Any]:
@@ -100,7 +55,7 @@ def of_one(mesh: VoronoiMesh, options: dict[str, Any]) -> dict[str, Any]:
 
 def require_same_runs(mesh: VoronoiMesh, processes: int, runs: list[dict[str, Any]], folder: Path) -> None:
     jobs = [{"kind": "run", "options": options, "less": 0} for options in runs]
-    for options, found in zip(runs, on_processes(processes, mesh, jobs, folder), strict=True):
+    for options, found in zip(runs, results(processes, mesh, jobs, folder), strict=True):
         expected = of_one(mesh, options)
         assert {name: found[name] for name in expected} == expected, options
         assert found["sent"] == found["received"] > 0
@@ -140,7 +95,7 @@ def test_one_ring_fewer_gives_other_bits(icosahedral_mesh: VoronoiMesh, tmp_path
         {"dissipation": 1e15},
     ]
     jobs = [{"kind": "run", "options": options, "less": less} for options in runs for less in (0, 1)]
-    found = on_processes(2, icosahedral_mesh, jobs, tmp_path)
+    found = results(2, icosahedral_mesh, jobs, tmp_path)
     for options, enough, fewer in zip(runs, found[::2], found[1::2], strict=True):
         expected = of_one(icosahedral_mesh, options)["fields"]["thickness"]
         assert enough["fields"]["thickness"] == expected, options
@@ -151,7 +106,7 @@ def test_sums_and_the_end_of_a_run_that_fails(icosahedral_mesh: VoronoiMesh, tmp
     """Sums and extremes are the same in any division; every process stops after the step that one found unsound."""
     failing: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}, {"dissipation": 1e15}]
     jobs = [{"kind": "collect"}, *({"kind": "break_off", "options": options} for options in failing)]
-    sums, *ends = on_processes(3, icosahedral_mesh, jobs, tmp_path)
+    sums, *ends = results(3, icosahedral_mesh, jobs, tmp_path)
     random = np.random.default_rng(3)
     rows = random.normal(size=(3, 999)) * 10.0 ** random.integers(-200, 200, (3, 999))
     rows[2, 500] = np.nan
