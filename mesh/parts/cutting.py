@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, Index
+from mesh.arrays import BLOCK, Array, Index
 from mesh.conventions import MESH_VARIABLES
 from mesh.parts.mesh_rows import MeshRows, RowsInMemory
 from mesh.voronoi_mesh import VoronoiMesh
@@ -56,7 +56,7 @@ def reduced(whole: MeshRows, kept: Kept) -> VoronoiMesh:
             continue
         values = whole.rows(variable.name, numbers[variable.dimensions[0]])
         if variable.of is not None:
-            values = _renumbered(values, numbers[variable.of]).astype(np.int32)
+            values = _renumbered(values, numbers[variable.of])
         arrays[variable.name] = values
     gone = (whole.rows("cells_on_vertex", kept.vertices) >= 0) & (arrays["cells_on_vertex"] < 0)
     kites = np.where(gone, 0.0, arrays["kite_areas_on_vertex"])
@@ -70,26 +70,33 @@ def _weights(whole: MeshRows, kept: Kept, stays: NDArray[np.bool_]) -> tuple[Ind
     """`WEIGHTS` of the kept edges, where only those of their cells count that `stays` (n, 2) marks."""
     cells = whole.rows("cells_on_edge", kept.edges)
     beside = np.unique(cells[cells >= 0])
-    sizes_beside = whole.rows("n_edges_on_cell", beside)
-    sizes = np.where(cells >= 0, np.append(sizes_beside, 0)[_renumbered(cells, beside)] - 1, 0)
-    around, weights = (whole.rows(name, kept.edges) for name in ("edges_on_edge", "weights_on_edge"))
-    place = np.arange(around.shape[1])
+    sizes_beside = np.append(whole.rows("n_edges_on_cell", beside), 0)
+    edges, weights = whole.rows("edges_on_edge", kept.edges).astype(np.int32), whole.rows("weights_on_edge", kept.edges)
+    counts = np.empty(len(edges), np.int32)
+    for low in range(0, len(edges), BLOCK):  # what is between takes several times the memory of the rows
+        rows = slice(low, low + BLOCK)
+        sizes = np.where(cells[rows] >= 0, sizes_beside[_renumbered(cells[rows], beside)] - 1, 0)
+        used = _of_those_that_stay(sizes, stays[rows], edges.shape[1])
+        order = np.argsort(~used, axis=1, kind="stable")
+        counts[rows] = used.sum(axis=1)
+        numbers = np.where(used, _renumbered(edges[rows], kept.edges), FILL)
+        edges[rows] = np.take_along_axis(numbers, order, axis=1)
+        weights[rows] = np.take_along_axis(np.where(used, weights[rows], 0.0), order, axis=1)
+    return counts, edges, weights
+
+
+def _of_those_that_stay(sizes: Index, stays: NDArray[np.bool_], width: int) -> NDArray[np.bool_]:
+    """Which entries (n, width) of the weights belong to a cell that stays, where both (n, 2) cells have `sizes`."""
+    place = np.arange(width)
     of_first = place < sizes[:, :1]
-    used = (place < sizes.sum(axis=1, keepdims=True)) & np.where(of_first, stays[:, :1], stays[:, 1:])
-    order = np.argsort(~used, axis=1, kind="stable")
-    around = np.where(used, _renumbered(around, kept.edges), FILL)
-    return (
-        used.sum(axis=1).astype(np.int32),
-        np.take_along_axis(around, order, axis=1).astype(np.int32),
-        np.take_along_axis(np.where(used, weights, 0.0), order, axis=1),
-    )
+    return (place < sizes.sum(axis=1, keepdims=True)) & np.where(of_first, stays[:, :1], stays[:, 1:])
 
 
 def _renumbered(values: Index, kept: Index) -> Index:
-    """The places of `values` among the `kept` numbers, in ascending order; -1 for those that are not there."""
+    """The places, int32, of `values` among the `kept` numbers, in ascending order; -1 for those that are not there."""
     if not kept.size:
-        return np.full(values.shape, FILL)
+        return np.full(values.shape, FILL, np.int32)
     kept = kept.astype(values.dtype)  # so that no wider copy of the values is made
-    place = np.searchsorted(kept, values)
+    place = np.searchsorted(kept, values).astype(np.int32)
     found = kept[np.minimum(place, len(kept) - 1)] == values
-    return np.where(found, place, FILL)
+    return np.where(found, place, np.int32(FILL))
