@@ -115,9 +115,9 @@ def _move_cells(
     for k in range(larger.size):
         i = larger[k]
         outflow[i] = _outflow(i, larger_start[k], 1, larger_sides[k], h, U, edges, cells, ratio)
-    start, moved = base[first : first + owned], result[first : first + owned]
+    before, moved = base[first : first + owned], result[first : first + owned]
     for i in range(owned):
-        moved[i] = start[i] - factor * (0.5 * outflow[i] * inverse_area[i])
+        moved[i] = before[i] - factor * (0.5 * outflow[i] * inverse_area[i])
 
 
 @inlined
