@@ -4,13 +4,12 @@ from pathlib import Path
 
 import numpy as np
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array
 from mesh.errors import MeshError, require
 from mesh.files.mesh_file import FileContent, opened_mesh_file, read_content
 from mesh.geometry.sphere import dot, from_lonlat, normalize
 from mesh.partition.cell_graph import CellGraph, graph_of_triangles
 from mesh.safe_files import AnyPath
-from mesh.triangulation.ordering import hilbert_order
 
 CARTESIAN = ("x_cell", "y_cell", "z_cell")
 ANGLES = ("lon_cell", "lat_cell")
@@ -33,25 +32,6 @@ def read_cells(path: AnyPath) -> tuple[CellGraph, Array]:
         return _graph(content), _generators(content)
     except MeshError as error:
         raise MeshError(f"{path}: {error}") from error
-
-
-def blocks_along_curve(path: AnyPath, count: int) -> Index:
-    """The block (n_cells,), int32, of every cell of a mesh file that is cut into `count` along a Hilbert curve.
-
-    Sizes of blocks differ by one cell at most. Reads generators alone. Raises `MeshError` where they are missing or
-    wrong, or fewer than blocks.
-    """
-    path = Path(path)
-    content = _read(path, frozenset({*CARTESIAN, *ANGLES}))
-    try:
-        order = hilbert_order(_generators(content))
-    except MeshError as error:
-        raise MeshError(f"{path}: {error}") from error
-    if not 0 < count <= len(order):
-        raise MeshError(f"{path}: {len(order)} cells cannot be divided into {count} blocks; choose another number")
-    blocks = np.empty(len(order), np.int32)
-    blocks[order] = np.arange(len(order)) * count // len(order)
-    return blocks
 
 
 def _read(path: Path, names: frozenset[str]) -> FileContent:

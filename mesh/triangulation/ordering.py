@@ -18,7 +18,7 @@ def renumber(points: Array, triangles: Index) -> tuple[Array, Index]:
 
 def hilbert_order(points: Array) -> Index:
     """Permutation (n,) that numbers unit vectors (n, 3) along Hilbert curves on the six faces of a cube."""
-    return np.argsort(_hilbert_keys(points), kind="stable")
+    return np.argsort(hilbert_keys(points), kind="stable")
 
 
 def inverse_order(order: Index) -> Index:
@@ -42,8 +42,8 @@ def turn_triangles(triangles: Index) -> Index:
 
 
 @numba.njit(parallel=True, cache=True)
-def _hilbert_keys(points: Array) -> Index:
-    """Places (n,), int64, along the curves."""
+def hilbert_keys(points: Array) -> Index:
+    """Places (n,), int64, of unit vectors (n, 3) along the curves of `hilbert_order`."""
     keys = np.empty(len(points), np.int64)
     for point in numba.prange(len(points)):
         axis = 0

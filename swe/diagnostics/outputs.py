@@ -65,6 +65,7 @@ class Evaluation:
         """Rates of the global integrals, except those of the time step."""
         tendency = self.state.empty_like()
         self.tendency(self.state, tendency, self.time)
+        self.model.processes.exchange(tendency)
         return measure_rates(self.model, self.state, self.diagnosis, tendency, self.time)
 
     @property

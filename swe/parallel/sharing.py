@@ -8,9 +8,8 @@ from pathlib import Path
 from mpi4py import MPI
 
 from mesh.errors import MeshError
-from mesh.files.cells_of_file import blocks_along_curve
 from mesh.files.io import mesh_hash, whole_arrays, write_arrays
-from mesh.files.part_of_file import read_part, scaled_hash_of_file
+from mesh.files.part_of_file import blocks_along_curve, read_part, scaled_hash_of_file
 from mesh.files.whole_mesh import MeshInFile, mesh_in_file
 from mesh.safe_files import remove_leftovers
 from mesh.voronoi_mesh import VoronoiMesh
@@ -93,5 +92,6 @@ def _shared(whole: MeshInFile, rings: int, communicator: MPI.Intracomm) -> MpiPr
             f"{size} processes are too many for a mesh of {whole.n_cells} cells; start {whole.n_cells // FEWEST_CELLS} "
             "at most"
         )
-    part = together(communicator, lambda: read_part(whole.path, blocks_along_curve(whole.path, size), rank, rings))
+    blocks = on_first(communicator, lambda: blocks_along_curve(whole.path, size))
+    part = together(communicator, lambda: read_part(whole.path, blocks, rank, rings))
     return MpiProcesses(part, whole, communicator)

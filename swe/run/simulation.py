@@ -54,7 +54,7 @@ from swe.stepping.time_stepping import RungeKutta
 from swe.tiles.fused import FusedMethod, why_not_fused
 
 CELL_STEPS_PER_CALL = 400_000
-"""Cells times steps between two checks for signals and updates of the progress bar: about a twentieth of a second."""
+"""Cells of a process times steps between two checks for signals, and updates of the progress bar: some 50 ms."""
 
 
 class Simulation:
@@ -362,7 +362,7 @@ class Simulation:
 
     def _advance(self, event: float, most: int) -> None:
         """Take some steps towards `event`, seconds, without passing it, and no more than `most`."""
-        most = max(1, min(most, CELL_STEPS_PER_CALL // self.model.cells))
+        most = max(1, min(most, CELL_STEPS_PER_CALL * self.model.processes.count // self.model.cells))
         before, start = self.state.copy() if self._start.kites_matter else None, self.time
         self.time, taken = self.stepper.advance(self.state, start, event, self.configuration.time_step, most)
         self.steps += taken

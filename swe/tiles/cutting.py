@@ -25,8 +25,9 @@ from mesh.discrete.walls import closed_mesh
 from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
+from swe.parallel.processes import EVERYTHING, Own
 from swe.tiles.layout import LANES, MIRROR, RING, TileArrays
-from swe.tiles.numbering import LocalNumbers, order_of_cells, packed
+from swe.tiles.numbering import LocalNumbers, order_of_cells, packed, tile_bounds
 from swe.tiles.rings import in_whole_blocks, places_in_blocks, ring_array, ring_size, slots_of_sides, whole_blocks
 
 CELLS_PER_TILE = 2560
@@ -38,10 +39,11 @@ class Tiles:
     """Tiles of a mesh; `arrays` is what the kernels take.
 
     `cell_order` and `edge_order` are the cells and edges of the mesh in the order of the tiles, or None if that is the
-    order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are where each tile starts in it. `halo` holds the
-    places of the cells and edges that a tile reads from others; `indices` and `metrics` hold the tile's local indices
-    and its geometry, with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) say where each part
-    begins, and where the last one ends; `_Cutter.cut` defines their order. `most` holds the largest sizes of any tile.
+    order of the mesh. `first_cell` and `first_edge` (n_tiles + 1,) are where each tile starts in it; of a part of a
+    mesh, the tiles leave out cells and edges at both ends that belong to others. `halo` holds the places of the cells
+    and edges that a tile reads from others; `indices` and `metrics` hold the tile's local indices and its geometry,
+    with Coriolis parameter and topography. Their `..._parts` (n_tiles, ...) say where each part begins, and where the
+    last one ends; `_Cutter.cut` defines their order. `most` holds the largest sizes of any tile.
     """
 
     cell_order: Index | None
@@ -102,6 +104,7 @@ def build_tiles(
     sides: Sides | None = None,
     with_border: bool = False,
     changed_vorticity: bool = False,
+    own: Own = EVERYTHING,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
@@ -112,16 +115,17 @@ def build_tiles(
     those of a scheme whose flux through a side has a part from each of its cells: they hold the rings of all cells
     around those computed, and the vectors of their sides. With `changed_vorticity` they hold what
     `swe.tiles.vorticity_loop` reads: the rings of these cells in all arrays, all their vertices, and what lies across
-    their sides in both forms. Raises `InputError` if not even the surroundings of a single cell fit.
+    their sides in both forms. Of a part of a mesh only tiles are made that hold its `own` entities. Raises
+    `InputError` if not even the surroundings of a single cell fit.
     """
-    n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
-    first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
     signs = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
     whole, mesh = mesh, closed_mesh(mesh)
-    cell_order = order_of_cells(mesh, first_cell)
+    cell_order = order_of_cells(mesh, tile_bounds(0, mesh.n_cells, cells_per_tile))
     cell_rank = inverse_order(cell_order)
     ends = np.sort(cell_rank[mesh.cells_on_edge], axis=1)
     edge_order = np.lexsort((ends[:, 1], ends[:, 0]))
+    needed = np.concatenate([cell_rank[own.cells], ends[own.edges, 0]])
+    first_cell = tile_bounds(int(needed.min()), int(needed.max()) + 1, cells_per_tile)
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
     edge_rank = inverse_order(edge_order)
     cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, changed_vorticity, cell_rank, edge_rank)
@@ -131,7 +135,7 @@ def build_tiles(
             edge_order[first_edge[tile] : first_edge[tile + 1]],
             with_border,
         )
-        for tile in range(n_tiles)
+        for tile in range(len(first_cell) - 1)
     ]
     most = LocalSizes(*np.max([list(piece.sizes) for piece in pieces], axis=0).tolist())
     if most.edges > MIRROR:
@@ -149,6 +153,7 @@ def build_tiles(
             sides=sides,
             with_border=with_border,
             changed_vorticity=changed_vorticity,
+            own=own,
         )
     halo, halo_parts = packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = packed([piece.indices for piece in pieces], np.uint16)

@@ -31,15 +31,16 @@ def _load_mean_of_cells(heights: Arrays, weights: Weights, first: int, owned: in
     """
     new, last, start = heights
     a, b, c = weights
+    own, own_last, own_start = new[first : first + owned], last[first : first + owned], start[first : first + owned]
     if b == 0.0:
         for i in range(owned):
-            local[i] = a * new[first + i] + c * start[first + i]
+            local[i] = a * own[i] + c * own_start[i]
         for i in range(halo.size):
             cell = halo[i]
             local[owned + i] = a * new[cell] + c * start[cell]
         return
     for i in range(owned):
-        local[i] = a * new[first + i] + b * last[first + i] + c * start[first + i]
+        local[i] = a * own[i] + b * own_last[i] + c * own_start[i]
     for i in range(halo.size):
         cell = halo[i]
         local[owned + i] = a * new[cell] + b * last[cell] + c * start[cell]
@@ -60,9 +61,11 @@ def _move_edges(
     result: Array,
 ) -> None:
     """Result = u + factor du/dt at the tile's own edges, and its circulation there and at the border."""
+    own, moved = u[first : first + owned], result[first : first + owned]
+    here, there = slots[:owned], slots[owned:]
     for e in range(owned):
-        velocity = u[first + e] + factor * ((S[slots[e]] - S[slots[owned + e]]) / d[e])
-        result[first + e] = velocity
+        velocity = own[e] + factor * ((S[here[e]] - S[there[e]]) / d[e])
+        moved[e] = velocity
         circulation = d[e] * velocity
         U[e] = circulation
         U[MIRROR + e] = -circulation
@@ -112,8 +115,9 @@ def _move_cells(
     for k in range(larger.size):
         i = larger[k]
         outflow[i] = _outflow(i, larger_start[k], 1, larger_sides[k], h, U, edges, cells, ratio)
+    before, moved = base[first : first + owned], result[first : first + owned]
     for i in range(owned):
-        result[first + i] = base[first + i] - factor * (0.5 * outflow[i] * inverse_area[i])
+        moved[i] = before[i] - factor * (0.5 * outflow[i] * inverse_area[i])
 
 
 @inlined

@@ -51,6 +51,7 @@ class FusedMethod:
             sides=sides,
             with_border=with_border,
             changed_vorticity=bool(model.terms_in_stages),
+            own=model.processes.own,
         )
         self.model = model
         self._scratch = _scratch(self.tiles)

@@ -44,6 +44,12 @@ class LocalNumbers:
         self._entities, self._count = [], 0
 
 
+def tile_bounds(first: int, last: int, cells_per_tile: int) -> Index:
+    """Where tiles of about `cells_per_tile` cells start in the run of cells from `first` up to `last`, and its end."""
+    n_tiles = max(1, round((last - first) / cells_per_tile))
+    return np.linspace(first, last, n_tiles + 1).astype(np.int64)
+
+
 def order_of_cells(mesh: VoronoiMesh, first_cell: Index) -> Index:
     """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
     own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)

@@ -26,8 +26,9 @@ from swe.tiles.layout import MIRROR, Arrays, TileArrays, compiled, inlined, opti
 @inlined
 def _load_cells(h: Array, first: int, owned: int, halo: Index, local: Array) -> None:
     """Thickness of the tile's own cells and of those in its halo."""
+    own = h[first : first + owned]
     for i in range(owned):
-        local[i] = h[first + i]
+        local[i] = own[i]
     for i in range(halo.size):
         local[owned + i] = h[halo[i]]
 
@@ -35,8 +36,9 @@ def _load_cells(h: Array, first: int, owned: int, halo: Index, local: Array) -> 
 @inlined
 def _load_edges(u: Array, first: int, owned: int, halo: Index, d: Array, U: Array) -> None:
     """U_e = d_e u_e, and -U_e mirrored."""
+    own = u[first : first + owned]
     for i in range(owned):
-        circulation = d[i] * u[first + i]
+        circulation = d[i] * own[i]
         U[i] = circulation
         U[MIRROR + i] = -circulation
     for i in range(halo.size):
@@ -197,8 +199,9 @@ def _tendency_of_tile(
 @inlined
 def _add_scaled(first: int, last: int, y: Array, factor: float, slope: Array, result: Array) -> None:
     """Result = y + factor slope on the tile's own entities."""
-    for i in range(last - first):
-        result[first + i] = y[first + i] + factor * slope[i]
+    start, end = y[first:last], result[first:last]
+    for i in range(end.size):
+        end[i] = start[i] + factor * slope[i]
 
 
 @inlined
@@ -209,18 +212,19 @@ def _add_weighted_slopes(
 
     The states of the stages thus stand in for their slopes, which need not be kept.
     """
-    for i in range(last - first):
-        start = y[first + i]
-        slopes = (second[first + i] - start) + 2.0 * (third[first + i] - start) + (fourth[first + i] - start)
-        y[first + i] = start + (slopes / 3.0 + time_step / 6.0 * slope[i])
+    own, y_2, y_3, y_4 = y[first:last], second[first:last], third[first:last], fourth[first:last]
+    for i in range(own.size):
+        start = own[i]
+        slopes = (y_2[i] - start) + 2.0 * (y_3[i] - start) + (y_4[i] - start)
+        own[i] = start + (slopes / 3.0 + time_step / 6.0 * slope[i])
 
 
 @inlined
 def _count_unsound(first: int, last: int, values: Array, least: float) -> int:
     """Number of values that are not finite or not above `least`."""
-    count = 0
-    for i in range(first, last):
-        if not (least < values[i] < np.inf):
+    own, count = values[first:last], 0
+    for i in range(own.size):
+        if not ((least < own[i]) & (own[i] < np.inf)):
             count += 1
     return count
 

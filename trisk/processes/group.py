@@ -52,7 +52,7 @@ class Group:
         while not arrival.Test():
             if code and time.monotonic() - begin > SECONDS_TO_MEET:
                 print(said.strip(), file=sys.__stderr__, flush=True)
-                self._comm.Abort(code)
+                MPI.COMM_WORLD.Abort(code)
             time.sleep(SECONDS_BETWEEN_LOOKS)
         endings = self._comm.allgather((code, said))
         code, said = next((each for each in endings if each[0]), (code, said))

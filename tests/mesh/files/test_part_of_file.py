@@ -10,9 +10,8 @@ import pytest
 from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh, write_mesh
 from mesh.arrays import Index
 from mesh.files import stamped_file
-from mesh.files.cells_of_file import blocks_along_curve
 from mesh.files.io import mesh_hash
-from mesh.files.part_of_file import read_part, scaled_hash_of_file, write_scaled_copy
+from mesh.files.part_of_file import blocks_along_curve, read_part, scaled_hash_of_file, write_scaled_copy
 from mesh.files.stamped_file import NotValidatedError
 from mesh.parts.mesh_part import MeshPart, cut_part
 
