@@ -38,7 +38,7 @@ class CellGraph:
 
     @property
     def edges(self) -> Index:
-        """The pairs (n_edges, 2) of neighbours, each once with the lower one first: `cells_on_edge` in another order."""
+        """The pairs (n_edges, 2) of neighbours, once each and the lower one first: `cells_on_edge` in another order."""
         owners = self.owners
         once = owners < self.neighbours
         return np.stack([owners[once], self.neighbours[once]], axis=1)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array
 from mesh.partition.partition import Partition, require_possible_blocks
 from mesh.triangulation.ordering import hilbert_order
 

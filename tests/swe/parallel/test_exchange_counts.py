@@ -5,8 +5,8 @@ import pytest
 
 from mesh import Partition, VoronoiMesh
 from mesh.arrays import Index
-from mesh.parts.mesh_part import MeshPart, cut_part
 from mesh.partition.cell_graph import cell_graph
+from mesh.parts.mesh_part import MeshPart, cut_part
 from swe.parallel.exchange_counts import ExchangeCounts, count_exchanges
 from swe.parallel.exchange_plan import Messages, bytes_of, messages_read
 from tests.cut_mesh import without_cap
