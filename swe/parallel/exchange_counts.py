@@ -8,11 +8,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mesh.arrays import Index
+from mesh.arrays import Array, Index
 from mesh.partition.cell_graph import CellGraph
 from mesh.partition.halos import halo_rings
 from mesh.partition.partition import Partition
 from swe.parallel.exchange_plan import BYTES
+
+Numbers = Index | Array
+"""Whole where they are counted; means and extrapolations of them need not be."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,11 +26,11 @@ class ExchangeCounts:
     velocities at edges.
     """
 
-    own_cells: Index
-    halo_cells: Index
-    neighbours: Index
-    values_sent: Index
-    values_received: Index
+    own_cells: Numbers
+    halo_cells: Numbers
+    neighbours: Numbers
+    values_sent: Numbers
+    values_received: Numbers
 
     @property
     def n_parts(self) -> int:
@@ -35,7 +38,7 @@ class ExchangeCounts:
         return len(self.own_cells)
 
     @property
-    def bytes_sent(self) -> Index:
+    def bytes_sent(self) -> Numbers:
         """Bytes (n_parts,) that each sends in an exchange."""
         return BYTES * self.values_sent
 

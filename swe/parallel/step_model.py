@@ -13,7 +13,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from swe.integrators import FB_RK32, STEPPINGS, Integrator
-from swe.parallel.exchange_counts import ExchangeCounts
+from swe.parallel.exchange_counts import ExchangeCounts, Numbers
 from swe.parallel.exchange_plan import BYTES
 
 RK4_STAGES = 4
@@ -125,9 +125,8 @@ def resized(counts: ExchangeCounts, like: ExchangeCounts) -> ExchangeCounts:
     So the sizes of many large parts follow from those of many small ones and of a few large ones.
     """
 
-    def rescaled(values: Array, means: Array) -> Array:
-        result: Array = values * (means.mean() / values.mean())
-        return result
+    def rescaled(values: Numbers, means: Numbers) -> Array:
+        return np.asarray(values * (means.mean() / values.mean()), dtype=np.float64)
 
     return ExchangeCounts(
         own_cells=rescaled(counts.own_cells, like.own_cells),

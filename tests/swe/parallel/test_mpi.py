@@ -26,10 +26,11 @@ PROGRAM = Path(__file__).with_name("mpi_program.py")
 MPIEXEC = shutil.which("mpiexec", path=os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]))
 TIMEOUT = 400.0
 
-pytestmark = pytest.mark.skipif(
+needs_mpi = pytest.mark.skipif(
     MPIEXEC is None or importlib.util.find_spec("mpi4py") is None,
     reason="mpi4py or mpiexec is not installed; pip install 'trisk[mpi]' brings both",
 )
+pytestmark = needs_mpi
 
 CONSISTENT = {"scheme": "consistent", "anticipation": 0.5, "dissipation": 1e15}
 QUICK: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}]
