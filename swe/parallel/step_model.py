@@ -29,13 +29,15 @@ class Network:
 
 @dataclass(frozen=True)
 class Machine:
-    """What a process costs by itself: seconds for a cell and step, and for a pass and its exchange whatever the size.
+    """What a process costs by itself: seconds for a cell and step, for a pass with its exchange, and for a byte in it.
 
-    The latter is that of calling compiled loops and MPI, without the network.
+    A pass costs the calls of compiled loops and of MPI, whatever its size; a byte that is sent costs being packed, and
+    unpacked by another process. The network comes on top.
     """
 
     seconds_per_cell: float
     seconds_per_pass: float = 0.0
+    seconds_per_byte: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -67,8 +69,8 @@ class StepTime:
     """Seconds of a step on the slowest process, by cause.
 
     `compute` is that of a process with an equal share of the cells and nothing else to do. `imbalance` comes from its
-    larger share, `halo` from computing cells of others, `overhead` from calls, `latency` from messages, `volume` from
-    bytes, `reductions` from agreeing with all others.
+    larger share, `halo` from computing cells of others, `overhead` from calls and packing, `latency` from messages,
+    `volume` from bytes on their way, `reductions` from agreeing with all others.
     """
 
     compute: float
@@ -94,16 +96,17 @@ def step_time(counts: ExchangeCounts, pattern: StepPattern, machine: Machine, ne
     """The time of a step on the parts that `counts` describe."""
     share = float(counts.own_cells.mean())
     passes = pattern.passes if counts.n_parts > 1 else 0.0  # a process alone exchanges nothing
-    overhead = machine.seconds_per_pass * passes
-    latency = network.latency * passes * counts.neighbours
-    volume = BYTES * passes / network.bandwidth * np.maximum(counts.values_sent, counts.values_received)
+    sent = BYTES * np.maximum(counts.values_sent, counts.values_received)
+    overhead = passes * (machine.seconds_per_pass + machine.seconds_per_byte * sent)
+    latency = passes * network.latency * counts.neighbours
+    volume = passes / network.bandwidth * sent
     cells = counts.own_cells + counts.halo_cells
-    slowest = int(np.argmax(machine.seconds_per_cell * cells + latency + volume))
+    slowest = int(np.argmax(machine.seconds_per_cell * cells + overhead + latency + volume))
     return StepTime(
         compute=machine.seconds_per_cell * share,
         imbalance=machine.seconds_per_cell * (float(counts.own_cells[slowest]) - share),
         halo=machine.seconds_per_cell * float(counts.halo_cells[slowest]),
-        overhead=overhead,
+        overhead=float(overhead[slowest]),
         latency=float(latency[slowest]),
         volume=float(volume[slowest]),
         reductions=network.latency * pattern.reductions * rounds_of_reduction(counts.n_parts),

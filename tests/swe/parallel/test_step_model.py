@@ -72,13 +72,19 @@ COUNTS = counts_of([90, 110, 100, 100], [10, 10, 50, 20], [2, 3, 3, 2], [5, 6, 7
 
 def test_each_cause_takes_its_time() -> None:
     """By hand: the third part is the slowest, and its time is all that counts."""
-    network, machine = Network(latency=2.0, bandwidth=4.0), Machine(seconds_per_cell=10.0, seconds_per_pass=3.0)
+    network, machine = Network(latency=2.0, bandwidth=4.0), Machine(10.0, seconds_per_pass=3.0, seconds_per_byte=0.25)
     found = step_time(COUNTS, step_pattern("rk4"), machine, network)
     assert found == StepTime(
-        compute=1000.0, imbalance=0.0, halo=500.0, overhead=12.0, latency=24.0, volume=4 * 8 * 7 / 4.0, reductions=4.0
+        compute=1000.0,
+        imbalance=0.0,
+        halo=500.0,
+        overhead=4 * (3.0 + 8 * 7 * 0.25),
+        latency=4 * 3 * 2.0,
+        volume=4 * 8 * 7 / 4.0,
+        reductions=4.0,
     )
-    assert found.total == 1596.0
-    assert found.efficiency == 1000.0 / 1596.0
+    assert found.total == 1652.0
+    assert found.efficiency == 1000.0 / 1652.0
     unequal = step_time(replace(COUNTS, halo_cells=np.array([1, 1, 1, 1])), step_pattern("rk4"), machine, network)
     assert (unequal.imbalance, unequal.halo) == (100.0, 10.0)
     many_messages = step_time(COUNTS, step_pattern("rk4"), replace(machine, seconds_per_cell=1e-3), network)
@@ -93,7 +99,7 @@ def test_what_is_received_may_take_longer_than_what_is_sent() -> None:
 
 def test_a_process_alone_only_computes() -> None:
     alone = counts_of([100], [0], [0], [0])
-    found = step_time(alone, step_pattern("rrk4"), Machine(1.0, 1.0), Network())
+    found = step_time(alone, step_pattern("rrk4"), Machine(1.0, 1.0, 1.0), Network())
     assert [getattr(found, field.name) for field in fields(found)] == [100.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]
     assert found.efficiency == 1.0
 
