@@ -19,6 +19,9 @@ COUNTED = {2: 163842, 10: 655362, 40: 2621442}
 SPREAD_OF, SIZES_OF = 2621442, 40
 """Of more parts than that, neighbours and spread are those of this mesh in so many parts, sizes those of 40 parts."""
 
+RESIZED = (64, 256)
+"""Numbers of parts for which resizing is compared with what is counted."""
+
 MANY = 10000
 
 MACHINE = Machine(seconds_per_cell=157e-9, seconds_per_pass=50e-6, seconds_per_byte=0.4e-9)
@@ -188,7 +191,7 @@ def resizing_lines(counted: Counted) -> list[str]:
     small, large = CELLS
     rows = []
     for division in DIVISIONS:
-        for parts in (64, 256):
+        for parts in RESIZED:
             like = counted.counts(small, parts // 4, division)  # parts of the same mean size
             found = resized(counted.counts(small, parts, division), like)
             real = counted.counts(large, parts, division)
