@@ -27,6 +27,7 @@ from scaling_tables import (
     RK4,
     WEAK_CELLS,
     Setting,
+    cause_lines,
     division_lines,
     resizing_lines,
     setting_lines,
@@ -120,7 +121,7 @@ def main() -> None:
     folder = parser.parse_args().folder
     prepared_folder(folder)
     counted = Counted(folder)
-    for lines in (division_lines, weak_lines, setting_lines, strong_lines, resizing_lines):
+    for lines in (division_lines, weak_lines, setting_lines, strong_lines, cause_lines, resizing_lines):
         print("\n".join([f"{lines.__name__}:", "", *lines(counted), ""]), flush=True)
     print(save(scaling_figure(counted), folder, "scaling"))
     print("\n".join(["", *exchange_lines(measured_exchanges(folder))]))

@@ -40,18 +40,24 @@ FBRK3 = 0.91
 
 @dataclass(frozen=True)
 class Setting:
-    """What the model is asked: how a step goes, on what machine and network; `own_cells_only` computes no halo."""
+    """What the model is asked: how a step goes, on what machine and network.
+
+    `own_cells_only` computes nothing in the halo; `equal_blocks` gives each part as many cells as any other.
+    """
 
     machine: Machine = MACHINE
     network: Network = NETWORK
     pattern: StepPattern = RK4
     rings: int = RINGS
     own_cells_only: bool = False
+    equal_blocks: bool = False
 
     def time(self, counts: ExchangeCounts) -> StepTime:
         """The time of a step on parts, which have the rings of this setting."""
         if self.own_cells_only:
             counts = replace(counts, halo_cells=np.zeros_like(counts.halo_cells))
+        if self.equal_blocks:
+            counts = replace(counts, own_cells=np.full(counts.n_parts, counts.own_cells.mean()))
         return step_time(counts, self.pattern, self.machine, self.network)
 
 
@@ -61,9 +67,11 @@ MENDED = Setting(replace(MACHINE, seconds_per_pass=0.0), own_cells_only=True)
 
 SETTINGS: dict[str, Setting] = {
     "as built": AS_BUILT,
+    "blocks of equal size": replace(AS_BUILT, equal_blocks=True),
     "only own cells computed": replace(AS_BUILT, own_cells_only=True),
     "no calls from Python in a step": replace(AS_BUILT, machine=replace(MACHINE, seconds_per_pass=0.0)),
     "both": MENDED,
+    "both, blocks of equal size": replace(MENDED, equal_blocks=True),
     "rrk4": replace(AS_BUILT, pattern=step_pattern("rrk4")),
     "fbrk3, one step a call": replace(
         AS_BUILT,
@@ -75,6 +83,7 @@ SETTINGS: dict[str, Setting] = {
         machine=replace(MACHINE, seconds_per_cell=CONSISTENT * MACHINE.seconds_per_cell),
         rings=MORE_RINGS,
     ),
+    "100 us for each pass": replace(AS_BUILT, machine=replace(MACHINE, seconds_per_pass=100e-6)),
     "latency 10 us": replace(AS_BUILT, network=Network(latency=10e-6)),
     "64 processes share 12 GB/s": replace(AS_BUILT, network=Network(bandwidth=12e9 / 64)),
     "57 ns a cell": replace(AS_BUILT, machine=replace(MACHINE, seconds_per_cell=57e-9)),
@@ -150,9 +159,6 @@ def setting_lines(counted: Counted) -> list[str]:
         [name, *_shares(setting.time(weak_counts(counted, MANY, "METIS", setting.rings)))]
         for name, setting in SETTINGS.items()
     ]
-    balanced = weak_counts(counted, MANY, "METIS")
-    balanced = replace(balanced, own_cells=np.full_like(balanced.own_cells, balanced.own_cells.mean()))
-    rows.insert(1, ["blocks of equal size", *_shares(AS_BUILT.time(balanced))])
     return table(["setting", *_CAUSES, "efficiency"], rows)
 
 
@@ -160,7 +166,17 @@ _CAUSES = [field.name for field in fields(StepTime) if field.name != "compute"]
 
 
 def _shares(found: StepTime) -> list[str]:
-    return [*(f"{getattr(found, cause) / found.compute:.1%}" for cause in _CAUSES), f"{found.efficiency:.3f}"]
+    shares = (round(getattr(found, cause) / found.compute, 3) + 0.0 for cause in _CAUSES)  # no negative zero
+    return [*(f"{share:.1%}" for share in shares), f"{found.efficiency:.3f}"]
+
+
+def cause_lines(counted: Counted) -> list[str]:
+    """The same in strong scaling of the larger mesh, with METIS as built."""
+    rows = []
+    for parts in PARTS:
+        counts = counted.counts(CELLS[-1], parts, "METIS")
+        rows.append([f"{parts}", f"{counts.own_cells.mean():.0f}", *_shares(AS_BUILT.time(counts))])
+    return table(["processes", "cells each", *_CAUSES, "efficiency"], rows)
 
 
 def strong_lines(counted: Counted) -> list[str]:
