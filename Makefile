@@ -85,7 +85,7 @@ references: $(VENV)/installed-dev  ## The stored solutions of the spectral model
 mesh-page: $(VENV)/installed-dev  ## docs/meshes made anew; an hour
 	$(BIN)/python docs/tools/mesh_page.py docs/meshes --max-level 9
 
-scaling: $(VENV)/installed-dev  ## The tables and the figure of docs/scaling.md; ten minutes, 4 GB
+scaling: $(VENV)/installed-dev  ## The tables and the figure of docs/scaling.md made anew; a quarter of an hour, 3 GB
 	$(BIN)/python docs/tools/scaling_page.py runs/scaling
 
 clean:

@@ -25,7 +25,8 @@ RESIZED = (64, 256)
 MANY = 10000
 
 MACHINE = Machine(seconds_per_cell=157e-9, seconds_per_pass=50e-6, seconds_per_byte=0.4e-9)
-"""One thread: docs/performance.md has the cost of a cell, 10242 of them on one thread, `exchange_lines` the others."""
+"""One thread. A cell is from docs/performance.md, of 10242 on one thread of a quiet machine; a pass is what two
+processes measure (`scaling_page.exchange_lines`); a byte is twice its packing and unpacking in warm caches."""
 
 NETWORK = Network()
 
