@@ -87,8 +87,11 @@ def test_each_cause_takes_its_time() -> None:
     assert found.efficiency == 1000.0 / 1652.0
     unequal = step_time(replace(COUNTS, halo_cells=np.array([1, 1, 1, 1])), step_pattern("rk4"), machine, network)
     assert (unequal.imbalance, unequal.halo) == (100.0, 10.0)
-    many_messages = step_time(COUNTS, step_pattern("rk4"), replace(machine, seconds_per_cell=1e-3), network)
-    assert (many_messages.latency, many_messages.volume) == (24.0, 4 * 8 * 7 / 4.0)
+    few_cells = replace(machine, seconds_per_cell=1e-3)
+    many_bytes = step_time(COUNTS, step_pattern("rk4"), few_cells, network)
+    assert (many_bytes.latency, many_bytes.volume) == (4 * 2 * 2.0, 4 * 8 * 8 / 4.0)
+    many_messages = step_time(COUNTS, step_pattern("rk4"), few_cells, replace(network, latency=100.0))
+    assert (many_messages.latency, many_messages.volume) == (4 * 3 * 100.0, 4 * 8 * 7 / 4.0)
 
 
 def test_what_is_received_may_take_longer_than_what_is_sent() -> None:
