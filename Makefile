@@ -11,7 +11,7 @@ MUTANTS := 200
 SEED := 1
 
 .SECONDARY:
-.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page clean
+.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -84,6 +84,9 @@ references: $(VENV)/installed-dev  ## The stored solutions of the spectral model
 
 mesh-page: $(VENV)/installed-dev  ## docs/meshes made anew; an hour
 	$(BIN)/python docs/tools/mesh_page.py docs/meshes --max-level 9
+
+scaling: $(VENV)/installed-dev  ## The tables and the figure of docs/scaling.md made anew; a quarter of an hour, 3 GB
+	$(BIN)/python docs/tools/scaling_page.py runs/scaling
 
 clean:
 	rm -rf $(VENV) build dist *.egg-info

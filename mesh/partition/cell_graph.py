@@ -36,6 +36,13 @@ class CellGraph:
         """The cell (2 n_edges,) in whose row each entry of `neighbours` stands."""
         return np.repeat(np.arange(self.n_cells, dtype=np.int32), np.diff(self.starts))
 
+    @property
+    def edges(self) -> Index:
+        """The pairs (n_edges, 2) of neighbours, once each and the lower one first: `cells_on_edge` in another order."""
+        owners = self.owners
+        once = owners < self.neighbours
+        return np.stack([owners[once], self.neighbours[once]], axis=1)
+
     def rows_of(self, cells: Index) -> tuple[Index, Index]:
         """The numbers (n,) of neighbours of `cells` (n,), and these neighbours one row after another."""
         counts = np.diff(self.starts)[cells]

@@ -6,6 +6,7 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.partition.cell_graph import CellGraph, block_graph
+from mesh.partition.halos import halo_rings
 from mesh.partition.mending import broken_blocks
 from mesh.partition.partition import Partition
 
@@ -51,23 +52,5 @@ def measure_partition(graph: CellGraph, partition: Partition, weights: Array | N
 
 def halo_sizes(graph: CellGraph, partition: Partition, rings: int) -> Index:
     """Number (rings, n_blocks) of cells in each ring round each block: those at a distance of 1, 2, ... edges."""
-    n_cells, blocks = graph.n_cells, partition.block_of_cell.astype(np.int64)
-    crossing = graph.between(blocks)
-    # A cell in the halo of a block is one number, block * n_cells + cell; sets of these are sorted.
-    before = np.zeros(0, dtype=np.int64)
-    ring = np.unique(blocks[graph.owners[crossing]] * n_cells + graph.neighbours[crossing])
-    sizes = [np.bincount(ring // n_cells, minlength=partition.n_blocks)]
-    while len(sizes) < rings:
-        outside = _neighbours_of(graph, ring)
-        outside = outside[blocks[outside % n_cells] != outside // n_cells]
-        before, ring = ring, np.setdiff1d(outside, np.union1d(before, ring), assume_unique=True)
-        sizes.append(np.bincount(ring // n_cells, minlength=partition.n_blocks))
-    return np.array(sizes)
-
-
-def _neighbours_of(graph: CellGraph, pairs: Index) -> Index:
-    """Pairs of a block and a neighbour of a cell, for `pairs` of the block and the cell; none twice."""
-    block, cell = np.divmod(pairs, graph.n_cells)
-    counts, neighbours = graph.rows_of(cell)
-    around: Index = np.unique(np.repeat(block, counts) * graph.n_cells + neighbours)
-    return around
+    found = halo_rings(graph, partition.block_of_cell, rings)
+    return np.array([np.bincount(ring // graph.n_cells, minlength=partition.n_blocks) for ring in found])

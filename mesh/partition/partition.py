@@ -44,12 +44,16 @@ def partition_mesh(mesh: Topology, blocks: int, weights: Array | Sequence[float]
 
 def partition_graph(graph: CellGraph, blocks: int, weights: Array | Sequence[float] | None = None) -> Partition:
     """Divide the cells of a graph as `partition_mesh` does."""
-    n_blocks = plain_count("the number of blocks", blocks)
-    if not 1 <= n_blocks <= graph.n_cells:
-        raise MeshError(
-            f"{graph.n_cells} cells cannot be divided into {n_blocks} blocks; ask for 1 to {graph.n_cells} blocks"
-        )
+    n_blocks = require_possible_blocks(blocks, graph.n_cells)
     return _divided(graph, n_blocks, _whole_weights(graph.n_cells, weights))
+
+
+def require_possible_blocks(blocks: int, n_cells: int) -> int:
+    """The number of blocks as a plain number; raises `MeshError` if `n_cells` cannot be divided into so many."""
+    n_blocks = plain_count("the number of blocks", blocks)
+    if not 1 <= n_blocks <= n_cells:
+        raise MeshError(f"{n_cells} cells cannot be divided into {n_blocks} blocks; ask for 1 to {n_cells} blocks")
+    return n_blocks
 
 
 def _divided(graph: CellGraph, n_blocks: int, weights: Index) -> Partition:

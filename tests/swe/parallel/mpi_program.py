@@ -15,20 +15,14 @@ from mpi4py import MPI
 
 from cases import Williamson5
 from mesh import VoronoiMesh
-from mesh.arrays import Array, Index
+from mesh.arrays import Array
 from mesh.parts.mesh_part import MeshPart, cut_part
 from swe import Simulation
 from swe.configuration import Options
 from swe.parallel.mpi import MpiProcesses
 from swe.run.composition import rings_needed
-from tests.swe.parallel.short_run import TIME_STEP, fields_of, hash_of, row_of, short_run
-
-
-def blocks_by_longitude(mesh: VoronoiMesh, blocks: int) -> Index:
-    """The block of every cell: runs of about equally many cells by longitude."""
-    result = np.empty(mesh.n_cells, np.int64)
-    result[np.argsort(mesh.lon_cell, kind="stable")] = np.arange(mesh.n_cells) * blocks // mesh.n_cells
-    return result
+from tests.swe.parallel.short_run import TIME_STEP, blocks_by_longitude, fields_of, hash_of, row_of, short_run
+from tests.swe.parallel.traffic import Traffic
 
 
 def gathered(comm: MPI.Intracomm, part: MeshPart, place: str, values: Array) -> Array:
@@ -74,6 +68,25 @@ def break_off(comm: MPI.Intracomm, mesh: VoronoiMesh, job: dict[str, Any]) -> di
     return {"taken": comm.allgather(taken), "unsound": comm.allgather(stepper.unsound > 0)}
 
 
+def count(comm: MPI.Intracomm, mesh: VoronoiMesh, job: dict[str, Any]) -> dict[str, Any]:
+    """What each process sends in some steps, in one call of the stepper or in one for each, and how often all agree."""
+    part = cut_part(mesh, blocks_by_longitude(mesh, comm.size), comm.rank, rings_needed(Options(**job["options"])))
+    traffic = Traffic(comm)
+    with traffic.counted():
+        processes = MpiProcesses(part, traffic)
+        simulation = Simulation(part.mesh, Williamson5(), time_step=TIME_STEP, processes=processes, **job["options"])
+        traffic.messages = traffic.bytes = traffic.reductions = 0
+        for _ in range(job["calls"]):
+            _, taken = simulation.stepper.advance(simulation.state, 0.0, 1e9, TIME_STEP, job["steps"])
+            assert taken == job["steps"]
+    return {
+        "loops": simulation.loops,
+        "messages": comm.allgather(traffic.messages),
+        "bytes": comm.allgather(traffic.bytes),
+        "reductions": comm.allgather(traffic.reductions),
+    }
+
+
 def collect(comm: MPI.Intracomm, mesh: VoronoiMesh, job: dict[str, Any]) -> dict[str, Any]:
     """Sums and extremes over processes of which each has some of the values."""
     processes = MpiProcesses(cut_part(mesh, blocks_by_longitude(mesh, comm.size), comm.rank, 1))
@@ -93,7 +106,7 @@ def main() -> None:
     comm = MPI.COMM_WORLD
     mesh, jobs, results = (Path(argument) for argument in sys.argv[1:])
     whole = pickle.loads(mesh.read_bytes())
-    kinds = {"run": run, "break_off": break_off, "collect": collect}
+    kinds = {"run": run, "break_off": break_off, "collect": collect, "count": count}
     found = [kinds[job["kind"]](comm, whole, job) for job in json.loads(jobs.read_text())]
     if comm.rank == 0:
         results.write_text(json.dumps(found))

@@ -1,17 +1,26 @@
-"""A short run of test case 5, and all that is compared of it."""
+"""A short run of test case 5, and all that is compared of it; and blocks of cells for it."""
 
 import hashlib
 from typing import Any
 
+import numpy as np
+
 from cases import Williamson5
 from mesh import VoronoiMesh
-from mesh.arrays import Array
+from mesh.arrays import Array, Index
 from swe import Simulation
 from swe.diagnostics.outputs import Evaluation, diagnostics_row, series_of
 from swe.parallel.processes import ONE_PROCESS, Processes
 
 DAYS = 0.25
 TIME_STEP = 1200.0
+
+
+def blocks_by_longitude(mesh: VoronoiMesh, blocks: int) -> Index:
+    """The block of every cell: runs of about equally many cells by longitude."""
+    result = np.empty(mesh.n_cells, np.int64)
+    result[np.argsort(mesh.lon_cell, kind="stable")] = np.arange(mesh.n_cells) * blocks // mesh.n_cells
+    return result
 
 
 def row_of(simulation: Simulation) -> dict[str, float]:
