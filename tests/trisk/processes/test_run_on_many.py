@@ -2,6 +2,7 @@
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -197,3 +198,16 @@ def test_cases_that_look_at_the_whole_mesh_are_refused(mesh_file: Path, tmp_path
     assert code == 2
     assert said.count("ValueError('only here')") == 1
     assert "Traceback" not in said
+
+
+@pytest.mark.slow
+def test_the_program_of_the_page_runs(mesh_file: Path, tmp_path: Path) -> None:
+    page = (Path(__file__).parents[3] / "docs/processes.md").read_text()
+    program = page.split("## In Python")[1].split("    # mpiexec")[1].split("Arrays of the state")[0]
+    (tmp_path / "program.py").write_text("# mpiexec" + program.replace("\n    ", "\n"))
+    shutil.copy(mesh_file, tmp_path / "mesh.nc")
+    command = [sys.executable, "-c", f"import os; os.chdir({str(tmp_path)!r}); exec(open('program.py').read())"]
+    code, said = on_processes(2, command)
+    assert code == 0, said
+    serially(run(mesh_file, tmp_path / "serial", "--days", 1))
+    require_same(tmp_path / "run", tmp_path / "serial")
