@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+from typing import Any, TypeVar, cast
 
 import numba
 import numpy as np
@@ -12,11 +12,16 @@ Array = NDArray[np.float64]
 Index = NDArray[np.integer]
 Signs = NDArray[np.int8]
 
-row_loop = numba.njit(cache=True, nogil=True, fastmath=False)
-"""A compiled loop over rows for `by_blocks`: threads run it side by side, and it loads sooner than a parallel one."""
-
 BLOCK = 8192
 """Rows that are taken together: what lies between two operations on them stays in the cache."""
+
+
+Loop = TypeVar("Loop", bound=Callable[..., Any])
+
+
+def row_loop(function: Loop) -> Loop:
+    """A compiled loop over rows for `by_blocks`: threads run it side by side; it loads sooner than a parallel one."""
+    return cast(Loop, numba.njit(cache=True, nogil=True, fastmath=False)(function))
 
 
 def sum_by_index(index: Index, values: Array, size: int) -> Array:

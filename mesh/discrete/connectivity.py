@@ -3,6 +3,8 @@
 Everything is checked exactly. Errors name the first offending entities, counted from 0.
 """
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -90,12 +92,12 @@ def _check_ranges(mesh: Topology) -> None:
         used = counts.get(variable.dimensions[1])
         if used is None:
             used = np.full(len(values), values.shape[1], np.int32)
-        valid = by_blocks(lambda rows, count, size=size: _are_indices(rows, count, size), values, used)
+        valid = by_blocks(partial(_are_indices, size), values, used)
         require(valid, variable.dimensions[0][2:], f"{variable.file_name} holds an index outside 1 to {size}")
 
 
 @row_loop
-def _are_indices(rows: Index, counts: Index, size: int) -> NDArray[np.bool_]:
+def _are_indices(size: int, rows: Index, counts: Index) -> NDArray[np.bool_]:
     """Whether each row has numbers of entities, of which there are `size`, up to its count, and fill beyond it."""
     valid = np.ones(len(rows), np.bool_)
     for row in range(len(rows)):
@@ -111,7 +113,7 @@ def _are_indices(rows: Index, counts: Index, size: int) -> NDArray[np.bool_]:
 def _check_rings(mesh: Topology) -> None:
     """Every cell's edges, neighbours and vertices agree with those of the edges, each edge in exactly two rings."""
     faults = by_blocks(
-        lambda *rings: _faults_of_cells(*rings, mesh.cells_on_edge, mesh.vertices_on_edge),
+        partial(_faults_of_cells, mesh.cells_on_edge, mesh.vertices_on_edge),
         *(np.arange(mesh.n_cells), mesh.n_edges_on_cell),
         *(mesh.edges_on_cell, mesh.cells_on_cell, mesh.vertices_on_cell),
     )
@@ -124,13 +126,13 @@ def _check_rings(mesh: Topology) -> None:
 
 @row_loop
 def _faults_of_cells(
+    cells_on_edge: Index,
+    vertices_on_edge: Index,
     cells: Index,
     counts: Index,
     edges: Index,
     across: Index,
     vertices: Index,
-    cells_on_edge: Index,
-    vertices_on_edge: Index,
 ) -> Faults:
     """Faults (n,) of the rings of these cells: bit k is sentence k of `CELL_FAULTS`."""
     faults = np.zeros(len(cells), np.uint8)
@@ -152,7 +154,7 @@ def _faults_of_cells(
 def _check_vertices(mesh: Topology) -> None:
     """Every vertex's edges and cells agree with the cells and vertices of the edges."""
     faults = by_blocks(
-        lambda *corners: _faults_of_vertices(*corners, mesh.cells_on_edge, mesh.vertices_on_edge),
+        partial(_faults_of_vertices, mesh.cells_on_edge, mesh.vertices_on_edge),
         *(np.arange(mesh.n_vertices), mesh.edges_on_vertex, mesh.cells_on_vertex),
     )
     of_edges, of_cells = VERTEX_FAULTS
@@ -164,7 +166,7 @@ def _check_vertices(mesh: Topology) -> None:
 
 @row_loop
 def _faults_of_vertices(
-    vertices: Index, edges: Index, cells: Index, cells_on_edge: Index, vertices_on_edge: Index
+    cells_on_edge: Index, vertices_on_edge: Index, vertices: Index, edges: Index, cells: Index
 ) -> Faults:
     """Faults (n,) of these vertices: bit k is sentence k of `VERTEX_FAULTS`."""
     faults = np.zeros(len(vertices), np.uint8)
@@ -183,7 +185,7 @@ def _faults_of_vertices(
 def _check_edges(mesh: Topology) -> None:
     """The tangent runs counter-clockwise round the first cell; `edges_on_edge` goes round both cells from the edge."""
     faults = by_blocks(
-        lambda *edges: _faults_of_edges(*edges, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.vertices_on_cell),
+        partial(_faults_of_edges, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.vertices_on_cell),
         *(np.arange(mesh.n_edges), mesh.cells_on_edge, mesh.vertices_on_edge, mesh.edges_on_edge),
     )
     _require_none(faults, "edges", *EDGE_FAULTS)
@@ -191,13 +193,13 @@ def _check_edges(mesh: Topology) -> None:
 
 @row_loop
 def _faults_of_edges(
+    n_edges_on_cell: Index,
+    edges_on_cell: Index,
+    vertices_on_cell: Index,
     edges: Index,
     cells: Index,
     vertices: Index,
     edges_on_edge: Index,
-    n_edges_on_cell: Index,
-    edges_on_cell: Index,
-    vertices_on_cell: Index,
 ) -> Faults:
     """Faults (n,) of these edges: bit k is sentence k of `EDGE_FAULTS`."""
     faults = np.zeros(len(edges), np.uint8)
@@ -222,7 +224,7 @@ def _faults_of_edges(
     return faults
 
 
-def _require_none(faults: Faults, place: str, *sentences: str) -> None:
+def _require_none(faults: Index, place: str, *sentences: str) -> None:
     """Raise `MeshError` with the first of the `sentences` whose bit is set in any of the faults (n,)."""
     for number, sentence in enumerate(sentences):
         require((faults >> number) & 1 == 0, place, sentence)

@@ -87,10 +87,10 @@ def _next_round_start(twins: Index, half_edge: int) -> int:
 @numba.njit(cache=True)
 def _are_mutual(twins: Index) -> bool:
     """Whether every half-edge is the twin of its twin."""
+    mutual = True
     for half_edge in range(len(twins)):
-        if twins[twins[half_edge]] != half_edge:
-            return False
-    return True
+        mutual &= twins[twins[half_edge]] == half_edge
+    return mutual
 
 
 @numba.njit(cache=True)
@@ -184,7 +184,7 @@ def _ring_lengths(twins: Index, first: Index) -> Index:
 def _rings(
     triangles: Index, twins: Index, edge_of: Index, first: Index, counts: Index, width: int
 ) -> tuple[Index, Index, Index]:
-    """Cells across, edges, and vertices (n_cells, width) round each cell, counter-clockwise from its first half-edge."""
+    """Cells across, edges and vertices (n_cells, width) of each ring, counter-clockwise from its first half-edge."""
     cells = np.full((len(first), width), FILL, np.int32)
     edges = np.full((len(first), width), FILL, np.int32)
     vertices = np.full((len(first), width), FILL, np.int32)
@@ -200,7 +200,7 @@ def _rings(
 
 @numba.njit(cache=True, parallel=True)
 def _ends(triangles: Index, twins: Index, forward: Index) -> tuple[Index, Index]:
-    """Cells (n_edges, 2) from which and to which each forward half-edge runs, and vertices (n_edges, 2), right to left."""
+    """Cells (n_edges, 2) at start and end of each forward half-edge, and vertices (n_edges, 2) right and left of it."""
     cells = np.empty((len(forward), 2), np.int32)
     vertices = np.empty((len(forward), 2), np.int32)
     for edge in numba.prange(len(forward)):
