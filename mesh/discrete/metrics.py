@@ -29,11 +29,12 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     area_cell = sum_by_index(topology.cells_on_vertex, kites, len(points))
     dc_edge = _lengths(points, topology.cells_on_edge)
     dv_edge = _lengths(vertices, topology.vertices_on_edge)
-    at_edge = _coordinates("edge", edges)
+    at_edge, at_vertex = _coordinates("edge", edges), _coordinates("vertex", vertices)
+    del edges, vertices  # the weights need the room
     return Metrics(
         **_coordinates("cell", points),
         **at_edge,
-        **_coordinates("vertex", vertices),
+        **at_vertex,
         dc_edge=dc_edge,
         dv_edge=dv_edge,
         angle_edge=edge_angles(points, topology.cells_on_edge, at_edge["lon_edge"], at_edge["lat_edge"]),

@@ -26,6 +26,9 @@ STANDARD_NAMES = {"lon": "longitude", "lat": "latitude"}
 SINGLE_DIMENSIONS = ("nVertLevels", "nTracers")
 """Of length 1: VTK's reader looks for the first, MPAS's shallow-water core for both. No array of a mesh has them."""
 
+SLAB = 1 << 18
+"""Rows of an array of indices that are written together."""
+
 FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
     "netcdf4": "NETCDF4",
     "cdf5": "NETCDF3_64BIT_DATA",
@@ -90,18 +93,25 @@ def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str,
 
 
 def define_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
-    """Define the mesh's dimensions in an open file and its arrays, or those in `names` only."""
+    """Define the mesh's dimensions in an open file and its arrays, or those in `names` only.
+
+    All of their values are written, so none is filled before.
+    """
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
         file.createDimension(DIMENSIONS[name], size)
     for name in SINGLE_DIMENSIONS:
         file.createDimension(name, 1)
     for place, dimension in PLACES.items():
-        identifier = file.createVariable(f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],))
+        identifier = file.createVariable(
+            f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],), fill_value=False
+        )
         identifier.long_name = f"number of each {place}"
     for variable in _variables(names):
         dimensions = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
-        target = file.createVariable(variable.file_name, "i4" if variable.integer else "f8", dimensions)
+        target = file.createVariable(
+            variable.file_name, "i4" if variable.integer else "f8", dimensions, fill_value=False
+        )
         target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
 
 
@@ -109,10 +119,14 @@ def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozens
     """Write what `define_mesh_variables` has defined."""
     sizes = dimension_sizes(mesh)
     for place, dimension in PLACES.items():
-        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1)
+        file[f"indexTo{place.capitalize()}ID"][:] = np.arange(1, sizes[dimension] + 1, dtype=np.int32)
     for variable in _variables(names):
-        values = getattr(mesh, variable.name)
-        file[variable.file_name][:] = values + 1 if variable.is_index else values
+        values, target = getattr(mesh, variable.name), file[variable.file_name]
+        # The library takes whole arrays of numbers as they are; those of indices go in slabs, each a little copy.
+        rows = SLAB if variable.is_index else max(len(values), 1)
+        for start in range(0, len(values), rows):
+            slab = values[start : start + rows]
+            target[start : start + rows] = slab + 1 if variable.is_index else slab
 
 
 def _variables(names: frozenset[str] | None) -> list[MeshVariable]:
