@@ -41,7 +41,7 @@ def mesh_hash(mesh: VoronoiMesh) -> str:
     """SHA-256, in hexadecimal, of every array of the mesh and its radius."""
     digest = hashlib.sha256(np.float64(mesh.sphere_radius).tobytes())
     for variable in MESH_VARIABLES:
-        digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).tobytes())
+        digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).reshape(-1).data)
     return digest.hexdigest()
 
 
