@@ -122,8 +122,8 @@ def _forward_half_edges(triangles: Index, twins: Index, n_cells: int) -> Index:
 
 def _find_half_edges(triangles: Index, twins: Index, cells_on_edge: Index) -> Index:
     """Of every edge the half-edge from its first to its second cell."""
-    start = np.roll(triangles, -1, axis=1).ravel()
-    size = np.int64(start.max()) + 1
+    start = np.roll(triangles, -1, axis=1).ravel().astype(np.int64)  # squares of numbers of cells have 64 bits
+    size = start.max() + 1
     keys = start * size + start[twins]
     order = np.argsort(keys)
     wanted = cells_on_edge[:, 0] * size + cells_on_edge[:, 1]

@@ -1,6 +1,7 @@
 """Reading and writing MPAS mesh files; the only place with indices that start at 1."""
 
 import hashlib
+import math
 import warnings
 from dataclasses import replace
 from datetime import UTC, datetime
@@ -36,6 +37,12 @@ FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSE
 }
 """Formats of mesh files: HDF5, and what programs read that are built with PnetCDF."""
 
+LARGEST_CLASSIC = 2**32 - 4
+"""Bytes of the largest array that a file of the format `classic` can hold."""
+
+FEWEST_EDGES = 6
+"""Width of the narrowest rings of a global mesh of more than 12 cells."""
+
 
 def mesh_hash(mesh: VoronoiMesh) -> str:
     """SHA-256, in hexadecimal, of every array of the mesh and its radius."""
@@ -54,7 +61,7 @@ def write_mesh(
     where the file cannot be written.
     """
     path = Path(path)
-    require_format(file_format)
+    require_format(file_format, dimension_sizes(mesh))
     try:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
@@ -71,10 +78,32 @@ def write_mesh(
         raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
 
 
-def require_format(file_format: str) -> None:
-    """Raise `MeshError` where there is no such format of mesh files."""
+def require_format(file_format: str, sizes: dict[str, int] | None = None) -> None:
+    """Raise `MeshError` where there is no such format of mesh files, or it holds no mesh of these dimensions."""
     if file_format not in FORMATS:
         raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
+    if sizes is None or file_format != "classic":
+        return
+    for variable in MESH_VARIABLES:
+        size = math.prod((4 if variable.integer else 8, *(sizes[dimension] for dimension in variable.dimensions)))
+        if size > LARGEST_CLASSIC:
+            raise MeshError(
+                f"{variable.file_name} of {sizes['n_cells']} cells takes {size / 1e9:.1f} GB, and files of the format "
+                f"classic hold arrays of {LARGEST_CLASSIC / 1e9:.1f} GB at most; choose the format cdf5 or netcdf4"
+            )
+
+
+def least_sizes(n_cells: int) -> dict[str, int]:
+    """Size of every dimension that a global mesh of so many cells has at least."""
+    return {
+        "n_cells": n_cells,
+        "n_edges": 3 * n_cells - 6,
+        "n_vertices": 2 * n_cells - 4,
+        "max_edges": FEWEST_EDGES,
+        "max_edges_2": 2 * FEWEST_EDGES,
+        "two": 2,
+        "vertex_degree": 3,
+    }
 
 
 def mesh_attributes(mesh: VoronoiMesh, history: str, identity: str) -> dict[str, object]:
