@@ -4,7 +4,6 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from scipy.interpolate import RegularGridInterpolator
 
 from mesh.arrays import Array
 from mesh.density.field_coordinates import QUARTER
@@ -53,6 +52,9 @@ def density_on_grid(
     latitude = np.concatenate([south[0], latitude[1:-1], north[0][::-1]])
     values = np.concatenate([south[1], values[1:-1], north[1][::-1]])
     longitude, values = _closed_circle(longitude, values, whole_circle)
+    # Loading it takes a tenth of a second, and only densities from files need it.
+    from scipy.interpolate import RegularGridInterpolator
+
     interpolate = RegularGridInterpolator((latitude, longitude), values)
 
     def density(points: Array) -> Array:

@@ -3,16 +3,35 @@
 Everything is checked exactly. Errors name the first offending entities, counted from 0.
 """
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Index, by_blocks
+from mesh.arrays import Index, by_blocks, row_loop
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError, require
 from mesh.voronoi_mesh import Topology
 
 MINIMUM_RING = 3
+
+Faults = NDArray[np.uint8]
+"""One number for each row: bit k says that sentence k of a list is true of it."""
+
+CELL_FAULTS = (
+    "edgesOnCell lists an edge that cellsOnEdge gives to other cells",
+    "cellsOnCell is not the cell across edgesOnCell",
+    "verticesOnCell does not lie between one edge and the next in edgesOnCell",
+)
+VERTEX_FAULTS = (
+    "edgesOnVertex lists an edge that verticesOnEdge gives to other vertices",
+    "cellsOnVertex does not lie between one edge and the next in edgesOnVertex",
+)
+EDGE_FAULTS = (
+    "verticesOnEdge does not run along the tangent, 90 degrees left of the normal given by cellsOnEdge",
+    "edgesOnEdge does not go counter-clockwise round the first cell, then round the second",
+)
 
 
 def validate_topology(mesh: Topology) -> None:
@@ -57,7 +76,11 @@ def _check_ranges(mesh: Topology) -> None:
         f"nEdgesOnCell is not between {MINIMUM_RING} and {mesh.max_edges}",
     )
     require(
-        mesh.n_edges_on_edge == mesh.n_edges_on_cell[np.clip(mesh.cells_on_edge, 0, mesh.n_cells - 1)].sum(1) - 2,
+        by_blocks(
+            lambda cells, count: count == mesh.n_edges_on_cell[np.clip(cells, 0, mesh.n_cells - 1)].sum(1) - 2,
+            mesh.cells_on_edge,
+            mesh.n_edges_on_edge,
+        ),
         "edges",
         "nEdgesOnEdge is not the number of other edges of the two cells",
     )
@@ -66,113 +89,142 @@ def _check_ranges(mesh: Topology) -> None:
         if variable.of is None:
             continue
         values, size = getattr(mesh, variable.name), sizes[variable.of]
-        width = variable.dimensions[1]
-        used = np.ones(values.shape, dtype=bool)
-        if width in counts:
-            used = np.arange(values.shape[1]) < counts[width][:, None]
-        valid = np.where(used, (values >= 0) & (values < size), values == FILL)
+        used = counts.get(variable.dimensions[1])
+        if used is None:
+            used = np.full(len(values), values.shape[1], np.int32)
+        valid = by_blocks(partial(_are_indices, size), values, used)
         require(valid, variable.dimensions[0][2:], f"{variable.file_name} holds an index outside 1 to {size}")
 
 
+@row_loop
+def _are_indices(size: int, rows: Index, counts: Index) -> NDArray[np.bool_]:
+    """Whether each row has numbers of entities, of which there are `size`, up to its count, and fill beyond it."""
+    valid = np.ones(len(rows), np.bool_)
+    for row in range(len(rows)):
+        for place in range(rows.shape[1]):
+            value = rows[row, place]
+            if place < counts[row]:
+                valid[row] &= 0 <= value < size
+            else:
+                valid[row] &= value == FILL
+    return valid
+
+
 def _check_rings(mesh: Topology) -> None:
-    """Every cell's edges and neighbours agree with the cells of the edges, each edge in exactly two rings."""
-
-    def of_own_edges(cells: Index, edges: Index, counts: Index) -> NDArray[np.bool_]:
-        inside = np.arange(mesh.max_edges) < counts[:, None]
-        ends = mesh.cells_on_edge[np.where(inside, edges, 0)]
-        return ((ends == cells[:, None, None]).sum(axis=2) == 1) | ~inside
-
-    def of_cells_across(cells: Index, edges: Index, counts: Index, across: Index) -> NDArray[np.bool_]:
-        inside = np.arange(mesh.max_edges) < counts[:, None]
-        ends = mesh.cells_on_edge[np.where(inside, edges, 0)]
-        return (ends.sum(axis=2) - cells[:, None] == across) | ~inside
-
-    rings = np.arange(mesh.n_cells), mesh.edges_on_cell, mesh.n_edges_on_cell
-    require(by_blocks(of_own_edges, *rings), "cells", "edgesOnCell lists an edge that cellsOnEdge gives to other cells")
-    require(
-        by_blocks(of_cells_across, *rings, mesh.cells_on_cell),
-        "cells",
-        "cellsOnCell is not the cell across edgesOnCell",
+    """Every cell's edges, neighbours and vertices agree with those of the edges, each edge in exactly two rings."""
+    faults = by_blocks(
+        partial(_faults_of_cells, mesh.cells_on_edge, mesh.vertices_on_edge),
+        *(np.arange(mesh.n_cells), mesh.n_edges_on_cell),
+        *(mesh.edges_on_cell, mesh.cells_on_cell, mesh.vertices_on_cell),
     )
-    inside = mesh.on_ring
-    uses = np.bincount(mesh.edges_on_cell[inside], minlength=mesh.n_edges)
+    *of_edges, of_vertices = CELL_FAULTS
+    _require_none(faults, "cells", *of_edges)
+    uses = np.bincount(mesh.edges_on_cell[mesh.on_ring], minlength=mesh.n_edges)
     require(uses == 2, "edges", "edgesOnCell does not list the edge in exactly two cells")
-    require(
-        by_blocks(
-            lambda *rings: _in_both(mesh.vertices_on_edge, *rings),
-            *(mesh.edges_on_cell, mesh.vertices_on_cell, inside, mesh.n_edges_on_cell),
-        ),
-        "cells",
-        "verticesOnCell does not lie between one edge and the next in edgesOnCell",
-    )
+    _require_none(faults >> len(of_edges), "cells", of_vertices)
 
 
-def _in_both(
-    vertices_on_edge: NDArray, edges: NDArray, vertices: NDArray, inside: NDArray, counts: NDArray
-) -> NDArray[np.bool_]:
-    """Whether vertex j of each ring is an end of edges j and j + 1."""
-    following = (np.arange(edges.shape[1]) + 1) % counts[:, None]
-    after = np.take_along_axis(edges, following, axis=1)
-    ends = [vertices_on_edge[np.where(inside, ring, 0)] for ring in (edges, after)]
-    return np.logical_and(*((end == vertices[:, :, None]).any(axis=2) for end in ends)) | ~inside
+@row_loop
+def _faults_of_cells(
+    cells_on_edge: Index,
+    vertices_on_edge: Index,
+    cells: Index,
+    counts: Index,
+    edges: Index,
+    across: Index,
+    vertices: Index,
+) -> Faults:
+    """Faults (n,) of the rings of these cells: bit k is sentence k of `CELL_FAULTS`."""
+    faults = np.zeros(len(cells), np.uint8)
+    for row in range(len(cells)):
+        for place in range(counts[row]):
+            edge, cell, vertex = edges[row, place], cells[row], vertices[row, place]
+            following = edges[row, place + 1 if place + 1 < counts[row] else 0]
+            first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
+            if (first == cell) == (second == cell):
+                faults[row] |= 1
+            if first + second - cell != across[row, place]:
+                faults[row] |= 2
+            for end in (edge, following):
+                if vertices_on_edge[end, 0] != vertex and vertices_on_edge[end, 1] != vertex:
+                    faults[row] |= 4
+    return faults
 
 
 def _check_vertices(mesh: Topology) -> None:
     """Every vertex's edges and cells agree with the cells and vertices of the edges."""
-    vertex = np.arange(mesh.n_vertices)[:, None]
-    ends = mesh.vertices_on_edge[mesh.edges_on_vertex]
-    require(
-        (ends == vertex[:, :, None]).sum(axis=2) == 1,
-        "vertices",
-        "edgesOnVertex lists an edge that verticesOnEdge gives to other vertices",
+    faults = by_blocks(
+        partial(_faults_of_vertices, mesh.cells_on_edge, mesh.vertices_on_edge),
+        *(np.arange(mesh.n_vertices), mesh.edges_on_vertex, mesh.cells_on_vertex),
     )
+    of_edges, of_cells = VERTEX_FAULTS
+    _require_none(faults, "vertices", of_edges)
     uses = np.bincount(mesh.edges_on_vertex.ravel(), minlength=mesh.n_edges)
     require(uses == 2, "edges", "edgesOnVertex does not list the edge at exactly two vertices")
-    before, after = np.roll(mesh.cells_on_vertex, 1, axis=1), mesh.cells_on_vertex
-    first, second = mesh.cells_on_edge.T[:, mesh.edges_on_vertex]
-    require(
-        ((first == before) & (second == after)) | ((first == after) & (second == before)),
-        "vertices",
-        "cellsOnVertex does not lie between one edge and the next in edgesOnVertex",
-    )
+    _require_none(faults >> 1, "vertices", of_cells)
+
+
+@row_loop
+def _faults_of_vertices(
+    cells_on_edge: Index, vertices_on_edge: Index, vertices: Index, edges: Index, cells: Index
+) -> Faults:
+    """Faults (n,) of these vertices: bit k is sentence k of `VERTEX_FAULTS`."""
+    faults = np.zeros(len(vertices), np.uint8)
+    for row in range(len(vertices)):
+        for corner in range(3):
+            edge, vertex = edges[row, corner], vertices[row]
+            if (vertices_on_edge[edge, 0] == vertex) == (vertices_on_edge[edge, 1] == vertex):
+                faults[row] |= 1
+            before, after = cells[row, (corner + 2) % 3], cells[row, corner]
+            first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
+            if not ((first == before and second == after) or (first == after and second == before)):
+                faults[row] |= 2
+    return faults
 
 
 def _check_edges(mesh: Topology) -> None:
     """The tangent runs counter-clockwise round the first cell; `edges_on_edge` goes round both cells from the edge."""
-
-    def along_tangent(edges: Index, cells: Index, vertices: Index) -> NDArray[np.bool_]:
-        first = cells[:, 0]
-        position = _positions(mesh, edges, first)
-        before = np.where(position == 0, mesh.n_edges_on_cell[first], position) - 1
-        ring = mesh.vertices_on_cell
-        right: NDArray[np.bool_] = (vertices[:, 0] == ring[first, before]) & (vertices[:, 1] == ring[first, position])
-        return right
-
-    def round_both_cells(edges: Index, cells: Index, edges_on_edge: Index) -> NDArray[np.bool_]:
-        right, row = np.ones(len(edges), np.bool_), np.arange(len(edges))
-        size = mesh.n_edges_on_cell[cells]
-        for side in (0, 1):
-            position, count = _positions(mesh, edges, cells[:, side]), size[:, side]
-            offset = 0 if side == 0 else size[:, 0] - 1
-            for step in range(1, mesh.max_edges):
-                inside, place = step < count, position + step
-                expected = mesh.edges_on_cell[cells[:, side], np.where(place < count, place, place - count)]
-                right &= (edges_on_edge[row, np.where(inside, offset + step - 1, 0)] == expected) | ~inside
-        return right
-
-    edges = np.arange(mesh.n_edges)
-    require(
-        by_blocks(along_tangent, edges, mesh.cells_on_edge, mesh.vertices_on_edge),
-        "edges",
-        "verticesOnEdge does not run along the tangent, 90 degrees left of the normal given by cellsOnEdge",
+    faults = by_blocks(
+        partial(_faults_of_edges, mesh.n_edges_on_cell, mesh.edges_on_cell, mesh.vertices_on_cell),
+        *(np.arange(mesh.n_edges), mesh.cells_on_edge, mesh.vertices_on_edge, mesh.edges_on_edge),
     )
-    require(
-        by_blocks(round_both_cells, edges, mesh.cells_on_edge, mesh.edges_on_edge),
-        "edges",
-        "edgesOnEdge does not go counter-clockwise round the first cell, then round the second",
-    )
+    _require_none(faults, "edges", *EDGE_FAULTS)
 
 
-def _positions(mesh: Topology, edges: Index, cells: Index) -> Index:
-    """Where each edge stands in the ring of its cell."""
-    return np.argmax(mesh.edges_on_cell[cells] == edges[:, None], axis=1)
+@row_loop
+def _faults_of_edges(
+    n_edges_on_cell: Index,
+    edges_on_cell: Index,
+    vertices_on_cell: Index,
+    edges: Index,
+    cells: Index,
+    vertices: Index,
+    edges_on_edge: Index,
+) -> Faults:
+    """Faults (n,) of these edges: bit k is sentence k of `EDGE_FAULTS`."""
+    faults = np.zeros(len(edges), np.uint8)
+    for row in range(len(edges)):
+        entry = 0
+        for side in range(2):
+            cell = cells[row, side]
+            count = n_edges_on_cell[cell]
+            start = 0  # the ring of the cell holds the edge, as has been checked
+            while start < count - 1 and edges_on_cell[cell, start] != edges[row]:
+                start += 1
+            before = start - 1 if start > 0 else count - 1
+            along = vertices[row, 0] == vertices_on_cell[cell, before]
+            along &= vertices[row, 1] == vertices_on_cell[cell, start]
+            if side == 0 and not along:
+                faults[row] |= 1
+            for step in range(1, count):
+                place = start + step if start + step < count else start + step - count
+                if edges_on_edge[row, entry] != edges_on_cell[cell, place]:
+                    faults[row] |= 2
+                entry += 1
+    return faults
+
+
+def _require_none(faults: Index, place: str, *sentences: str) -> None:
+    """Raise `MeshError` with the first of the `sentences` whose bit is set in any of the faults (n,)."""
+    for number, sentence in enumerate(sentences):
+        require((faults >> number) & 1 == 0, place, sentence)

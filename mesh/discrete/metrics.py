@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.arrays import Array, Index, by_blocks, sum_by_index
+from mesh.arrays import Array, Index, by_blocks, row_loop, sum_by_index
 from mesh.discrete.weights import tangential_weights
 from mesh.geometry.sphere import (
     arc_length,
@@ -11,8 +11,8 @@ from mesh.geometry.sphere import (
     east_north,
     normalize,
     to_lonlat,
-    triangle_area,
 )
+from mesh.geometry.vectors import area_parts, vector_to
 from mesh.voronoi_mesh import Metrics, Topology
 
 
@@ -29,11 +29,12 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     area_cell = sum_by_index(topology.cells_on_vertex, kites, len(points))
     dc_edge = _lengths(points, topology.cells_on_edge)
     dv_edge = _lengths(vertices, topology.vertices_on_edge)
-    at_edge = _coordinates("edge", edges)
+    at_edge, at_vertex = _coordinates("edge", edges), _coordinates("vertex", vertices)
+    del edges, vertices  # the weights need the room
     return Metrics(
         **_coordinates("cell", points),
         **at_edge,
-        **_coordinates("vertex", vertices),
+        **at_vertex,
         dc_edge=dc_edge,
         dv_edge=dv_edge,
         angle_edge=edge_angles(points, topology.cells_on_edge, at_edge["lon_edge"], at_edge["lat_edge"]),
@@ -70,13 +71,25 @@ def kite_areas(points: Array, edges: Array, vertices: Array, cells_on_vertex: In
     """
 
     def kites(cells: Index, sides: Index, corners: Array) -> Array:
-        areas = np.empty((len(corners), 3))
-        for j in range(3):
-            cell, before, after = points[cells[:, j]], edges[sides[:, j]], edges[sides[:, (j + 1) % 3]]
-            areas[:, j] = triangle_area(cell, corners, before) + triangle_area(cell, after, corners)
-        return areas
+        triples, denominators = _halves_of_kites(points, edges, cells, sides, corners)
+        halves = 2.0 * np.arctan2(triples, denominators)
+        return halves[:, 0::2] + halves[:, 1::2]
 
     return by_blocks(kites, cells_on_vertex, edges_on_vertex, vertices)
+
+
+@row_loop
+def _halves_of_kites(points: Array, edges: Array, cells: Index, sides: Index, corners: Array) -> tuple[Array, Array]:
+    """Numerators and denominators (n, 6) of `mesh.geometry.sphere.triangle_area`, two triangles for each kite."""
+    triples, denominators = np.empty((len(cells), 6)), np.empty((len(cells), 6))
+    for row in range(len(cells)):
+        corner = vector_to(corners, row)
+        for j in range(3):
+            cell = vector_to(points, cells[row, j])
+            before, after = vector_to(edges, sides[row, j]), vector_to(edges, sides[row, (j + 1) % 3])
+            triples[row, 2 * j], denominators[row, 2 * j] = area_parts(cell, corner, before)
+            triples[row, 2 * j + 1], denominators[row, 2 * j + 1] = area_parts(cell, after, corner)
+    return triples, denominators
 
 
 def _coordinates(place: str, points: Array) -> dict[str, Array]:

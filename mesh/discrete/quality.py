@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array
+from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
 from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
@@ -55,8 +55,8 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
 
 
 def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
-    sigma, q = neighbour_distance_ratio(mesh), triangle_quality(mesh)
     chords = edge_chords(mesh)
+    sigma, q = neighbour_distance_ratio(mesh, chords), triangle_quality(mesh, chords)
     return Quality(
         cells=mesh.n_cells,
         mu=float(chords.max() / chords.min()),
@@ -65,7 +65,7 @@ def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
         q_avg=float(q.mean()),
         q_min=float(q.min()),
         residual=float("nan") if density is None else centroid_residual(mesh, density),
-        obtuse=int(np.count_nonzero(obtuse_triangles(mesh))),
+        obtuse=int(np.count_nonzero(obtuse_triangles(mesh, chords))),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
     )
 
@@ -73,28 +73,50 @@ def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
 def edge_chords(mesh: VoronoiMesh) -> Array:
     """Straight distance between the two cells of each edge (n_edges,), on the unit sphere."""
     points = mesh.cell_points / mesh.sphere_radius
-    difference = points[mesh.cells_on_edge[:, 1]] - points[mesh.cells_on_edge[:, 0]]
-    return np.sqrt(dot(difference, difference))
+
+    def lengths(cells: Index) -> Array:
+        difference = points[cells[:, 1]] - points[cells[:, 0]]
+        return np.sqrt(dot(difference, difference))
+
+    return by_blocks(lengths, mesh.cells_on_edge)
 
 
-def neighbour_distance_ratio(mesh: VoronoiMesh) -> Array:
-    """Shortest over longest distance to a neighbour, sigma (n_cells,)."""
-    chords = edge_chords(mesh)
-    inside = mesh.on_ring
-    distances = chords[np.where(inside, mesh.edges_on_cell, 0)]
-    return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
+def neighbour_distance_ratio(mesh: VoronoiMesh, chords: Array | None = None) -> Array:
+    """Shortest over longest distance to a neighbour, sigma (n_cells,).
+
+    `chords` are those of `edge_chords`, where they are known; here and below.
+    """
+    lengths = edge_chords(mesh) if chords is None else chords
+
+    def ratio(edges: Index, counts: Index) -> Array:
+        inside = np.arange(edges.shape[1]) < counts[:, None]
+        distances = lengths[np.where(inside, edges, 0)]
+        return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
+
+    return by_blocks(ratio, mesh.edges_on_cell, mesh.n_edges_on_cell)
 
 
-def triangle_quality(mesh: VoronoiMesh) -> Array:
+def triangle_quality(mesh: VoronoiMesh, chords: Array | None = None) -> Array:
     """The measure q of the Delaunay triangles (n_vertices,): twice the inscribed over the circumscribed radius."""
-    a, b, c = edge_chords(mesh)[mesh.edges_on_vertex].T
-    return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c)
+    lengths = edge_chords(mesh) if chords is None else chords
+
+    def quality(edges: Index) -> Array:
+        a, b, c = (lengths[edges[:, k]] for k in range(3))
+        return (b + c - a) * (c + a - b) * (a + b - c) / (a * b * c)
+
+    return by_blocks(quality, mesh.edges_on_vertex)
 
 
-def obtuse_triangles(mesh: VoronoiMesh) -> NDArray[np.bool_]:
+def obtuse_triangles(mesh: VoronoiMesh, chords: Array | None = None) -> NDArray[np.bool_]:
     """Whether each Delaunay triangle (n_vertices,) is obtuse, so that its circumcentre lies outside."""
-    squares = np.sort(edge_chords(mesh)[mesh.edges_on_vertex] ** 2, axis=1)
-    return squares[:, 2] > squares[:, 0] + squares[:, 1]
+    lengths = edge_chords(mesh) if chords is None else chords
+
+    def obtuse(edges: Index) -> NDArray[np.bool_]:
+        a, b, c = (lengths[edges[:, k]] ** 2 for k in range(3))
+        wrong: NDArray[np.bool_] = (a > b + c) | (b > c + a) | (c > a + b)
+        return wrong
+
+    return by_blocks(obtuse, mesh.edges_on_vertex)
 
 
 def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:

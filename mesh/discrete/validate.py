@@ -4,10 +4,12 @@ Connectivity is checked exactly; residuals of metrics and identities, relative t
 tolerance. Errors name the first offending entities, counted from 0.
 """
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, Index, by_blocks
+from mesh.arrays import Array, Index, by_blocks, row_loop
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.comparison import Difference, angle_difference, metric_differences
 from mesh.discrete.connectivity import validate_topology
@@ -15,6 +17,14 @@ from mesh.discrete.identities import identity_residuals
 from mesh.discrete.metrics import compute_metrics
 from mesh.errors import MeshError, require
 from mesh.geometry.sphere import dot, normalize
+from mesh.geometry.vectors import (
+    cross_product,
+    dot_product,
+    triangle_normal,
+    triple_product,
+    vector_between,
+    vector_to,
+)
 from mesh.voronoi_mesh import Metrics, Topology, VoronoiMesh
 
 RULES = 1
@@ -89,22 +99,38 @@ def check_values(mesh: VoronoiMesh) -> None:
     """
     for variable in MESH_VARIABLES:
         if not variable.integer:
+            values = getattr(mesh, variable.name)
             require(
-                np.isfinite(getattr(mesh, variable.name)),
+                by_blocks(_are_finite, values.reshape(len(values), -1)),
                 variable.dimensions[0][2:],
                 f"{variable.file_name} is not a finite number",
             )
-    for place, points in (
-        ("cells", mesh.cell_points),
-        ("edges", mesh.edge_points),
-        ("vertices", mesh.vertex_points),
-    ):
-        require_on_sphere(points, mesh.sphere_radius, place)
+    for place, name in (("cells", "cell"), ("edges", "edge"), ("vertices", "vertex")):
+        axes = (getattr(mesh, f"{axis}_{name}") for axis in "xyz")
+        _require_on_sphere(by_blocks(lambda *rows: _lengths(np.stack(rows, axis=1)), *axes), mesh.sphere_radius, place)
+
+
+@row_loop
+def _are_finite(rows: Array) -> NDArray[np.bool_]:
+    """Whether all numbers of each row are finite."""
+    finite = np.ones(len(rows), np.bool_)
+    for row in range(len(rows)):
+        for place in range(rows.shape[1]):
+            finite[row] &= np.isfinite(rows[row, place])
+    return finite
 
 
 def require_on_sphere(points: Array, radius: float, place: str) -> None:
     """Raise `MeshError` unless all points (n, 3) lie on the sphere of this radius."""
-    distance = np.sqrt(dot(points, points))
+    _require_on_sphere(_lengths(points), radius, place)
+
+
+def _lengths(points: Array) -> Array:
+    return np.sqrt(dot(points, points))
+
+
+def _require_on_sphere(distance: Array, radius: float, place: str) -> None:
+    """Raise `MeshError` unless all distances (n,) from the origin are this radius."""
     require(
         np.abs(distance / radius - 1.0) <= OUTSIDE_TOLERANCE,
         place,
@@ -117,45 +143,70 @@ def check_orientation(points: Array, topology: Topology) -> None:
 
     Raises `MeshError`.
     """
-
-    def triangles_turn(cells: Index) -> NDArray[np.bool_]:
-        a, b, c = (points[cells[:, k]] for k in range(3))
-        turns: NDArray[np.bool_] = dot(a, np.cross(b - a, c - a)) > 0.0
-        return turns
-
-    def rings_turn(centers: Array, cells: Index, counts: Index) -> NDArray[np.bool_]:
-        place = np.arange(cells.shape[1])
-        inside = place < counts[:, None]
-        following = np.take_along_axis(cells, (place + 1) % counts[:, None], axis=1)
-        center = centers[:, None, :]
-        spokes, following_spokes = (points[np.where(inside, ring, 0)] - center for ring in (cells, following))
-        return (dot(center, np.cross(spokes, following_spokes)) > 0.0) | ~inside
-
     require(
-        by_blocks(triangles_turn, topology.cells_on_vertex), "vertices", "cellsOnVertex does not run counter-clockwise"
+        by_blocks(partial(_triangles_turn, points), topology.cells_on_vertex),
+        "vertices",
+        "cellsOnVertex does not run counter-clockwise",
     )
     require(
-        by_blocks(rings_turn, points, topology.cells_on_cell, topology.n_edges_on_cell),
+        by_blocks(partial(_rings_turn, points), points, topology.cells_on_cell, topology.n_edges_on_cell),
         "cells",
         "edgesOnCell does not run counter-clockwise",
     )
 
 
+@row_loop
+def _triangles_turn(points: Array, cells: Index) -> NDArray[np.bool_]:
+    """Whether the three cells (n, 3) of each triangle run counter-clockwise."""
+    turns = np.empty(len(cells), np.bool_)
+    for row in range(len(cells)):
+        a, b, c = cells[row, 0], cells[row, 1], cells[row, 2]
+        turns[row] = dot_product(vector_to(points, a), triangle_normal(points, a, b, c)) > 0.0
+    return turns
+
+
+@row_loop
+def _rings_turn(points: Array, centers: Array, cells: Index, counts: Index) -> NDArray[np.bool_]:
+    """Whether the neighbours (n, max_edges) of each cell run counter-clockwise round its centre (n, 3)."""
+    turns = np.ones(len(cells), np.bool_)
+    for row in range(len(cells)):
+        for place in range(counts[row]):
+            following = cells[row, place + 1 if place + 1 < counts[row] else 0]
+            spoke = vector_between(centers, row, points, cells[row, place])
+            next_spoke = vector_between(centers, row, points, following)
+            turns[row] &= triple_product(vector_to(centers, row), spoke, next_spoke) > 0.0
+    return turns
+
+
 def _check_delaunay(mesh: VoronoiMesh) -> None:
     """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
-    points, vertices = mesh.cell_points / mesh.sphere_radius, mesh.vertex_points / mesh.sphere_radius
+    points, vertices = mesh.cell_points, mesh.vertex_points
+    for each in (points, vertices):
+        each /= mesh.sphere_radius
 
-    def along_tangent(middles: Array, cells: Index, ends: Index) -> NDArray[np.bool_]:
-        normal = points[cells[:, 1]] - points[cells[:, 0]]
-        along = vertices[ends[:, 1]] - vertices[ends[:, 0]]
-        # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
-        slack = OUTSIDE_TOLERANCE * dot(normal, normal)
-        right: NDArray[np.bool_] = dot(along, np.cross(middles / mesh.sphere_radius, normal)) >= -slack
-        return right
+    def along_tangent(*rows: NDArray) -> NDArray[np.bool_]:
+        middles = np.stack(rows[:3], axis=1) / mesh.sphere_radius
+        return _run_along_tangent(points, vertices, middles, *rows[3:])
 
     require(
-        by_blocks(along_tangent, mesh.edge_points, mesh.cells_on_edge, mesh.vertices_on_edge),
+        by_blocks(
+            along_tangent,
+            *(mesh.x_edge, mesh.y_edge, mesh.z_edge, mesh.cells_on_edge, mesh.vertices_on_edge),
+        ),
         "edges",
         "the vertices of the edge lie against its tangent: the triangles are not the Delaunay triangulation of the "
         "cells, or vertices are out of place; build the mesh anew from its generators",
     )
+
+
+@row_loop
+def _run_along_tangent(points: Array, vertices: Array, middles: Array, cells: Index, ends: Index) -> NDArray[np.bool_]:
+    """Whether the way from the first to the second end (n, 2) of each edge does not run against its tangent."""
+    right = np.empty(len(cells), np.bool_)
+    for row in range(len(cells)):
+        normal = vector_between(points, cells[row, 0], points, cells[row, 1])
+        along = vector_between(vertices, ends[row, 0], vertices, ends[row, 1])
+        # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
+        slack = OUTSIDE_TOLERANCE * dot_product(normal, normal)
+        right[row] = dot_product(along, cross_product(vector_to(middles, row), normal)) >= -slack
+    return right

@@ -1,6 +1,7 @@
 """Reading and writing MPAS mesh files; the only place with indices that start at 1."""
 
 import hashlib
+import math
 import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import replace
@@ -12,7 +13,15 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.conventions import COORDINATES, DIMENSIONS, MESH_VARIABLES, MeshOutline, MeshVariable, dimension_sizes
+from mesh.conventions import (
+    BY_NAME,
+    COORDINATES,
+    DIMENSIONS,
+    MESH_VARIABLES,
+    MeshOutline,
+    MeshVariable,
+    dimension_sizes,
+)
 from mesh.density.record import define_generation, fill_generation, read_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
@@ -35,12 +44,21 @@ Slabs = Callable[[str], Iterable[NDArray]]
 Generation = tuple[str, str, NDArray[np.bool_] | None]
 """Name and source of the density that a mesh was generated for, and which of its generators were held."""
 
+SLAB = 1 << 18
+"""Rows of an array of indices that are written together."""
+
 FORMATS: dict[str, Literal["NETCDF4", "NETCDF3_64BIT_DATA", "NETCDF3_64BIT_OFFSET"]] = {
     "netcdf4": "NETCDF4",
     "cdf5": "NETCDF3_64BIT_DATA",
     "classic": "NETCDF3_64BIT_OFFSET",
 }
 """Formats of mesh files: HDF5, and what programs read that are built with PnetCDF."""
+
+LARGEST_CLASSIC = 2**32 - 4
+"""Bytes of the largest array that a file of the format `classic` can hold."""
+
+FEWEST_EDGES = 6
+"""Width of the narrowest rings of a global mesh of more than 12 cells."""
 
 
 def mesh_hash(mesh: VoronoiMesh) -> str:
@@ -59,7 +77,6 @@ def write_mesh(
     `history` tells how the mesh was made; `known_hash` is its `mesh_hash`, where that is known. A mesh that has passed
     validation as it is gets the stamp of `mesh.files.stamp`. Raises `MeshError` where the file cannot be written.
     """
-    require_format(file_format)
     identity = known_hash or mesh_hash(mesh)
     write_arrays(mesh, whole_arrays(mesh), Path(path), history, file_format, identity, is_validated(mesh))
 
@@ -68,6 +85,7 @@ def write_arrays(
     mesh: MeshOutline, slabs: Slabs, path: Path, history: str, file_format: str, identity: str, validated: bool
 ) -> None:
     """Write a mesh file of arrays that come in `slabs`; `identity` is their hash, the stamp if they are `validated`."""
+    require_format(file_format, dimension_sizes(mesh))
     try:
         with written_aside(path) as aside, dataset(aside, "w", format=FORMATS[file_format]) as file:
             stamp = datetime.now(UTC).strftime("%Y-%m-%d %H:%M:%S UTC")
@@ -86,10 +104,32 @@ def write_arrays(
         raise MeshError(f"{path}: cannot be written ({reason}); choose another place, or make room") from error
 
 
-def require_format(file_format: str) -> None:
-    """Raise `MeshError` where there is no such format of mesh files."""
+def require_format(file_format: str, sizes: dict[str, int] | None = None) -> None:
+    """Raise `MeshError` where there is no such format of mesh files, or it holds no mesh of these dimensions."""
     if file_format not in FORMATS:
         raise MeshError(f"there is no format of mesh files named '{file_format}'; choose one of {', '.join(FORMATS)}")
+    if sizes is None or file_format != "classic":
+        return
+    for variable in MESH_VARIABLES:
+        size = math.prod((4 if variable.integer else 8, *(sizes[dimension] for dimension in variable.dimensions)))
+        if size > LARGEST_CLASSIC:
+            raise MeshError(
+                f"{variable.file_name} of {sizes['n_cells']} cells takes {size / 1e9:.1f} GB, and files of the format "
+                f"classic hold arrays of {LARGEST_CLASSIC / 1e9:.1f} GB at most; choose the format cdf5 or netcdf4"
+            )
+
+
+def least_sizes(n_cells: int) -> dict[str, int]:
+    """Size of every dimension that a global mesh of so many cells has at least."""
+    return {
+        "n_cells": n_cells,
+        "n_edges": 3 * n_cells - 6,
+        "n_vertices": 2 * n_cells - 4,
+        "max_edges": FEWEST_EDGES,
+        "max_edges_2": 2 * FEWEST_EDGES,
+        "two": 2,
+        "vertex_degree": 3,
+    }
 
 
 def mesh_attributes(mesh: MeshOutline, history: str, identity: str) -> dict[str, object]:
@@ -108,18 +148,25 @@ def mesh_attributes(mesh: MeshOutline, history: str, identity: str) -> dict[str,
 
 
 def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: frozenset[str] | None = None) -> None:
-    """Define the mesh's dimensions in an open file and its arrays, or those in `names` only."""
+    """Define the mesh's dimensions in an open file and its arrays, or those in `names` only.
+
+    All of their values are written, so none is filled before.
+    """
     sizes = dimension_sizes(mesh)
     for name, size in sizes.items():
         file.createDimension(DIMENSIONS[name], size)
     for name in SINGLE_DIMENSIONS:
         file.createDimension(name, 1)
     for place, dimension in PLACES.items():
-        identifier = file.createVariable(f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],))
+        identifier = file.createVariable(
+            f"indexTo{place.capitalize()}ID", "i4", (DIMENSIONS[dimension],), fill_value=False
+        )
         identifier.long_name = f"number of each {place}"
     for variable in _variables(names):
         dimensions = tuple(DIMENSIONS[dimension] for dimension in variable.dimensions)
-        target = file.createVariable(variable.file_name, "i4" if variable.integer else "f8", dimensions)
+        target = file.createVariable(
+            variable.file_name, "i4" if variable.integer else "f8", dimensions, fill_value=False
+        )
         target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
 
 
@@ -129,8 +176,14 @@ def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozens
 
 
 def whole_arrays(mesh: VoronoiMesh) -> Slabs:
-    """The arrays of a mesh in memory, each in one slab."""
-    return lambda name: [getattr(mesh, name)]
+    """The arrays of a mesh in memory."""
+    return lambda name: _slabs(getattr(mesh, name), BY_NAME[name])
+
+
+def _slabs(values: NDArray, variable: MeshVariable) -> list[NDArray]:
+    """The library takes whole arrays of numbers as they are; those of indices go in slabs, each a little copy."""
+    rows = SLAB if variable.is_index else max(len(values), 1)
+    return [values[low : low + rows] for low in range(0, len(values), rows)]
 
 
 def fill_variables(file: netCDF4.Dataset, mesh: MeshOutline, slabs: Slabs, names: frozenset[str] | None = None) -> None:

@@ -12,7 +12,7 @@ import numpy as np
 from mesh.arrays import Index
 from mesh.conventions import MESH_VARIABLES
 from mesh.errors import MeshError
-from mesh.files.io import require_format, write_arrays
+from mesh.files.io import write_arrays
 from mesh.files.stamped_file import NotValidatedError, opened_stamped_file
 from mesh.geometry.sphere import normalize
 from mesh.parts.mesh_part import MeshPart, part_of_rows
@@ -72,7 +72,6 @@ def write_scaled_copy(
     `scaled_hash` is what `scaled_hash_of_file` gives for that radius. Raises `MeshError` where the file has no stamp or
     cannot be read, or where the copy cannot be written.
     """
-    require_format(file_format)
     with opened_stamped_file(path) as mesh:
         scaled = mesh.scaled(radius)
         write_arrays(scaled, scaled.slabs, Path(target), history, file_format, scaled_hash, validated=True)

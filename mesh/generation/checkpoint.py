@@ -57,7 +57,10 @@ class CheckpointKeeper:
     def __call__(self, iterate: Iterate) -> None:
         """Record an iterate."""
         if self._best is None or iterate.residual < self._best[0]:
-            self._best = (iterate.residual, iterate.points.copy())
+            # The same array each time: memory that is new to the process costs more than the copy.
+            points = np.empty_like(iterate.points) if self._best is None else self._best[1]
+            np.copyto(points, iterate.points)
+            self._best = (iterate.residual, points)
         if time.monotonic() - self._saved > SECONDS_BETWEEN:
             self.save()
 

@@ -1,8 +1,9 @@
 """Starting points on the unit sphere: bisection of the icosahedron, the Fibonacci spiral, and random points."""
 
+import numba
 import numpy as np
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, density_at, uniform
 from mesh.density.scaling import largest_value, within_range
 from mesh.errors import MeshError
@@ -37,23 +38,41 @@ def bisect(points: Array, triangles: Index) -> tuple[Array, Index, Index]:
     (4 m, 3) of the same orientation, the children of triangle t being 4 t to 4 t + 3, and the two old points
     (3 n - 6, 2) between which each new one lies.
     """
-    twins = build_twins(triangles, len(points)).ravel()
-    leading = np.flatnonzero(np.arange(triangles.size) < twins)
-    middles = np.empty(triangles.size, np.int32)
-    middles[leading] = len(points) + np.arange(len(leading), dtype=np.int32)
-    middles[twins[leading]] = middles[leading]
-    ends = np.stack([np.roll(triangles, -1, axis=1).ravel()[leading], np.roll(triangles, 1, axis=1).ravel()[leading]])
-    refined = np.concatenate([points, normalize(points[ends[0]] + points[ends[1]])])
-    a, b, c = triangles.T
-    opposite_a, opposite_b, opposite_c = middles.reshape(-1, 3).T
-    children = [
-        (a, opposite_c, opposite_b),
-        (opposite_c, b, opposite_a),
-        (opposite_b, opposite_a, c),
-        (opposite_a, opposite_b, opposite_c),
-    ]
-    fine = np.stack([np.stack(child, axis=1) for child in children], axis=1).reshape(-1, 3)
-    return refined, fine.astype(np.int32), ends.T.astype(np.int32)
+    triangles = np.ascontiguousarray(triangles, dtype=np.int32)
+    middles, ends = _middles(triangles, build_twins(triangles, len(points)), len(points))
+    between = by_blocks(lambda pair: normalize(points[pair[:, 0]] + points[pair[:, 1]]), ends)
+    return np.concatenate([points, between]), _children(triangles, middles), ends
+
+
+@numba.njit(cache=True)
+def _middles(triangles: Index, twins: Index, n_points: int) -> tuple[Index, Index]:
+    """Numbers (m, 3) of the middles of sides opposite to corners, from `n_points` on, and the ends of these sides."""
+    middles = np.empty_like(triangles)
+    ends = np.empty((triangles.size // 2, 2), np.int32)
+    count = 0
+    for triangle in range(len(triangles)):
+        for k in range(3):
+            twin = twins[triangle, k]
+            if 3 * triangle + k < twin:
+                middles[triangle, k] = middles[twin // 3, twin % 3] = n_points + count
+                ends[count, 0], ends[count, 1] = triangles[triangle, (k + 1) % 3], triangles[triangle, (k + 2) % 3]
+                count += 1
+    return middles, ends
+
+
+@numba.njit(cache=True)
+def _children(triangles: Index, middles: Index) -> Index:
+    """The four triangles (4 m, 3) of each: those at its three corners, and that of the middles of its sides."""
+    children = np.empty((4 * len(triangles), 3), np.int32)
+    for triangle in range(len(triangles)):
+        for k in range(3):
+            for corner in range(3):
+                source = triangles if corner == k else middles
+                # The child at corner k has, in place of each other corner, the middle of the side that joins both.
+                place = k if corner == k else 3 - k - corner
+                children[4 * triangle + k, corner] = source[triangle, place]
+            children[4 * triangle + 3, k] = middles[triangle, k]
+    return children
 
 
 def icosahedral_mesh(level: int) -> tuple[Array, Index]:

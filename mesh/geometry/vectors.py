@@ -66,3 +66,20 @@ def triangle_normal(points: Array, a: int, b: int, c: int) -> Vector:
 def determinant(points: Array, a: int, b: int, c: int) -> float:
     """Triple product of three points, from their positions."""
     return triple_product(vector_to(points, a), vector_to(points, b), vector_to(points, c))
+
+
+@compiled
+def difference(u: Vector, v: Vector) -> Vector:
+    """The vector u - v."""
+    return (u[0] - v[0], u[1] - v[1], u[2] - v[2])
+
+
+@compiled
+def area_parts(a: Vector, b: Vector, c: Vector) -> tuple[float, float]:
+    """Numerator and denominator of the tangent of half the area of a spherical triangle.
+
+    To the last digit those of `mesh.geometry.sphere.triangle_area`.
+    """
+    ab, ac, bc = difference(b, a), difference(c, a), difference(c, b)
+    squares = dot_product(ab, ab) + dot_product(ac, ac) + dot_product(bc, bc)
+    return triple_product(a, ab, ac), 4.0 - 0.5 * squares

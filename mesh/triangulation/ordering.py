@@ -31,14 +31,26 @@ def inverse_order(order: Index) -> Index:
 def sort_triangles(triangles: Index) -> Index:
     """Triangles (m, 3), int32, turned so that the lowest corner comes first, and sorted."""
     turned = turn_triangles(triangles)
-    return np.ascontiguousarray(turned[np.lexsort((turned[:, 1], turned[:, 0]))], dtype=np.int32)
+    keys = (turned[:, 0].astype(np.int64) << 32) + turned[:, 1]
+    return turned[np.argsort(keys, kind="stable")]
 
 
 def turn_triangles(triangles: Index) -> Index:
-    """Triangles (m, 3) turned so that the lowest corner comes first."""
-    lowest = np.argmin(triangles, axis=1)
-    corners = (lowest[:, None] + np.arange(3)) % 3
-    return np.take_along_axis(triangles, corners, axis=1)
+    """Triangles (m, 3), int32, turned so that the lowest corner comes first."""
+    return _turned(np.ascontiguousarray(triangles, dtype=np.int32))
+
+
+@numba.njit(cache=True)
+def _turned(triangles: Index) -> Index:
+    turned = np.empty_like(triangles)
+    for triangle in range(len(triangles)):
+        a, b, c = triangles[triangle]
+        if b < a and b <= c:
+            a, b, c = b, c, a
+        elif c < a:
+            a, b, c = c, a, b
+        turned[triangle, 0], turned[triangle, 1], turned[triangle, 2] = a, b, c
+    return turned
 
 
 @numba.njit(parallel=True, cache=True)

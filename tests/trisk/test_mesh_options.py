@@ -5,9 +5,12 @@ import re
 import subprocess
 import sys
 from dataclasses import fields
+from pathlib import Path
 
 from typer.main import get_command
+from typer.testing import CliRunner
 
+from mesh.errors import MeshError
 from mesh.generation.scvt import default_tolerance
 from mesh.mesh_request import MeshRequest
 from trisk.cli.mesh import mesh
@@ -39,3 +42,10 @@ def test_help_loads_no_numbers() -> None:
         "assert not {'numpy', 'numba', 'mesh', 'swe', 'cases', 'postprocess'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)
+
+
+def test_a_mesh_too_large_for_the_format_is_refused_before_it_is_made(tmp_path: Path) -> None:
+    words = ["mesh", "--cells", "41943042", "--format", "classic", "-o", str(tmp_path / "mesh.nc")]
+    done = CliRunner().invoke(app, words)
+    assert isinstance(done.exception, MeshError)
+    assert "choose the format cdf5 or netcdf4" in str(done.exception)

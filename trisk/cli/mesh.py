@@ -99,7 +99,7 @@ def mesh(
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
     from mesh import read_mesh, write_mesh
-    from mesh.files.io import require_format
+    from mesh.files.io import least_sizes, require_format
     from mesh.generation.pipeline import generate_mesh
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
@@ -122,7 +122,7 @@ def mesh(
         density_smoothing=density_smoothing,
     )
     limits = limits_of(request)
-    require_format(file_format)
+    require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
     if nested is not None:
         # Generators and triangles serve, whatever else the file holds.

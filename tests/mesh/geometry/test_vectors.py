@@ -5,7 +5,9 @@ import numpy as np
 import pytest
 
 from mesh.geometry import vectors
+from mesh.geometry.sphere import triangle_area
 from mesh.geometry.vectors import (
+    area_parts,
     chord,
     cross_product,
     determinant,
@@ -34,6 +36,13 @@ def test_products_are_those_of_numpy() -> None:
     np.testing.assert_allclose(chord(POINTS, 3, 1), np.linalg.norm(POINTS[3] - POINTS[1]), rtol=1e-14)
     normal = np.cross(POINTS[1] - POINTS[0], POINTS[2] - POINTS[0])
     np.testing.assert_allclose(triangle_normal(POINTS, 0, 1, 2), normal, rtol=1e-13)
+
+
+def test_areas_are_to_the_last_digit_those_of_rows() -> None:
+    a = np.random.default_rng(6).normal(size=(500, 3))
+    b, c = a + 0.01 * np.roll(a, 1, axis=0), a + 0.01 * np.roll(a, 2, axis=0)
+    parts = [area_parts(*(tuple(corner) for corner in corners)) for corners in zip(a, b, c, strict=True)]
+    np.testing.assert_array_equal(2.0 * np.arctan2(*np.array(parts).T), triangle_area(a, b, c))
 
 
 @pytest.mark.skipif(numba.config.DISABLE_JIT, reason="nothing is compiled")
