@@ -170,11 +170,6 @@ def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: froze
         target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
 
 
-def fill_mesh_variables(file: netCDF4.Dataset, mesh: VoronoiMesh, names: frozenset[str] | None = None) -> None:
-    """Write what `define_mesh_variables` has defined."""
-    fill_variables(file, mesh, whole_arrays(mesh), names)
-
-
 def whole_arrays(mesh: VoronoiMesh) -> Slabs:
     """The arrays of a mesh in memory."""
     return lambda name: _slabs(getattr(mesh, name), BY_NAME[name])
