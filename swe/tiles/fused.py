@@ -58,7 +58,8 @@ class FusedMethod:
         self._parts = None if sides is None else _parts_of_flux(self.tiles)
         self._changed = _changed(model, self.tiles)
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
-        self._stages = [(np.empty(cells), np.empty(edges)) for _ in range(stages)]
+        # Tiles that cover cells of a part's halo read its rim, which nothing writes beyond the tiles: no flow there.
+        self._stages = [(np.zeros(cells), np.zeros(edges)) for _ in range(stages)]
         self._unsound = np.zeros(self.tiles.n_tiles, np.int64)
         self._fetch = model.processes.exchange_in(self.tiles.cell_order, self.tiles.edge_order)
 
