@@ -45,10 +45,10 @@ EXCHANGE_PROGRAM = Path(__file__).with_name("scaling_exchange.py")
 EXCHANGE_CELLS = (642, 2562, 10242, 40962, 163842)
 
 LOOKS: dict[str, tuple[Setting, dict[str, str]]] = {
-    "runs along the curve, as built": (AS_BUILT, {"marker": "o"}),
-    "METIS blocks": (METIS, {"marker": "s", "linestyle": "--"}),
-    "METIS blocks, own cells numbered first": (METIS_OWN_FIRST, {"marker": "d", "linestyle": "-."}),
-    "along the curve, no calls from Python in a step": (MENDED, {"marker": "^", "linestyle": ":"}),
+    "curve, as built": (AS_BUILT, {"marker": "o"}),
+    "METIS, as built": (METIS, {"marker": "s", "linestyle": "--"}),
+    "METIS, own cells numbered first": (METIS_OWN_FIRST, {"marker": "d", "linestyle": "-."}),
+    "curve, no Python within a step": (MENDED, {"marker": "^", "linestyle": ":"}),
 }
 """Setting and look of each line by its label."""
 
