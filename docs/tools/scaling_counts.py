@@ -10,8 +10,9 @@ from mesh.arrays import Array, Index
 from mesh.generation.scvt import generate_scvt
 from mesh.mesh_request import MeshRequest
 from mesh.partition.cell_graph import CellGraph, graph_of_triangles
-from mesh.partition.curve import partition_along_curve
+from mesh.partition.curve import blocks_along_curve
 from mesh.partition.partition import Partition, partition_graph
+from mesh.triangulation.ordering import hilbert_keys
 from swe.configuration import Options
 from swe.parallel.exchange_counts import ExchangeCounts, count_exchanges
 from swe.run.composition import rings_needed
@@ -46,7 +47,8 @@ class Counted:
     def _divided(self, cells: int, parts: int, division: Division) -> Partition:
         """The blocks; those of METIS are kept, as it takes the longest."""
         if division == "curve":
-            return partition_along_curve(self._points_and_graph(cells)[1], parts)
+            _, points, _, edges = self._points_and_graph(cells)
+            return Partition(blocks_along_curve(hilbert_keys(points), (edges,), parts), parts)
         path = self._folder / f"blocks-{cells}-{parts}.npy"
         if not path.exists():
             np.save(path, partition_graph(self._graph(cells)[0], parts).block_of_cell)

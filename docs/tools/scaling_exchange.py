@@ -2,8 +2,8 @@
 
 mpiexec -n 2 python -m mpi4py docs/tools/scaling_exchange.py RESULTS.json CELLS ...
 
-Each process holds one METIS block of test case 5 with its halo. Turns alternate: exchanges alone, one after another;
-steps of RK4 with their exchanges; and steps of the same part, cells of the halo included, without any.
+Each process holds one run of cells along the curve of test case 5 with its halo. Turns alternate: exchanges alone, one
+after another; steps of RK4 with their exchanges; and steps of the same own cells without any.
 """
 
 import argparse
@@ -20,12 +20,15 @@ import numpy as np
 from mpi4py import MPI
 
 from cases import Williamson5
-from mesh import partition_mesh, scvt_mesh
+from mesh import scvt_mesh
 from mesh.arrays import Array
+from mesh.partition.curve import blocks_along_curve
 from mesh.parts.mesh_part import cut_part
+from mesh.triangulation.ordering import hilbert_keys
 from swe import ShallowWaterModel, Simulation
 from swe.configuration import Options
 from swe.parallel.mpi import MpiProcesses
+from swe.parallel.processes import OneProcess, Own
 from swe.run.composition import rings_needed
 from swe.tiles.fused import FusedRungeKutta
 
@@ -52,15 +55,25 @@ class Measured:
     alone: tuple[float, float]
 
 
+class Silent(OneProcess):
+    """A process that computes no more than what it owns, and neither sends nor receives."""
+
+    def __init__(self, own: Own) -> None:
+        self.own = own
+
+
 def measure(comm: MPI.Intracomm, cells: int) -> Measured:
     """The measurement on a mesh of `cells` cells, the same on all processes."""
     mesh = scvt_mesh(cells)
-    blocks = partition_mesh(mesh, comm.size).block_of_cell
+    blocks = blocks_along_curve(hilbert_keys(mesh.cell_points), (mesh.cells_on_edge,), comm.size)
     part = cut_part(mesh, blocks, comm.rank, rings_needed(Options()))
     processes = MpiProcesses(part)
     simulation = Simulation(part.mesh, Williamson5(), processes=processes)
     model, time_step = simulation.model, simulation.configuration.time_step
-    alone = FusedRungeKutta(ShallowWaterModel(model.mesh, model.topography, model.coriolis, model.gravity))
+    silent = Silent(processes.own)
+    alone = FusedRungeKutta(
+        ShallowWaterModel(model.mesh, model.topography, model.coriolis, model.gravity, processes=silent)
+    )
     start = simulation.state.copy()
 
     together = simulation.method

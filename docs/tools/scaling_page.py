@@ -18,11 +18,13 @@ from matplotlib.figure import Figure
 
 from postprocess.runs.folders import prepared_folder
 from postprocess.studies.table1_page import save
-from scaling_counts import DIVISIONS, Counted, Division
+from scaling_counts import DIVISIONS, Counted
 from scaling_tables import (
     AS_BUILT,
     CELLS,
     MENDED,
+    METIS,
+    METIS_OWN_FIRST,
     PARTS,
     RK4,
     WEAK_CELLS,
@@ -42,12 +44,13 @@ from swe.parallel.exchange_counts import ExchangeCounts
 EXCHANGE_PROGRAM = Path(__file__).with_name("scaling_exchange.py")
 EXCHANGE_CELLS = (642, 2562, 10242, 40962, 163842)
 
-LOOKS: dict[str, tuple[Setting, Division, dict[str, str]]] = {
-    "METIS, as built": (AS_BUILT, "METIS", {"marker": "o"}),
-    "Hilbert curve, as built": (AS_BUILT, "curve", {"marker": "s", "linestyle": "--"}),
-    "METIS, own cells only and compiled steps": (MENDED, "METIS", {"marker": "^", "linestyle": ":"}),
+LOOKS: dict[str, tuple[Setting, dict[str, str]]] = {
+    "curve, as built": (AS_BUILT, {"marker": "o"}),
+    "METIS, as built": (METIS, {"marker": "s", "linestyle": "--"}),
+    "METIS, own cells numbered first": (METIS_OWN_FIRST, {"marker": "d", "linestyle": "-."}),
+    "curve, no Python within a step": (MENDED, {"marker": "^", "linestyle": ":"}),
 }
-"""Setting, division and look of each line by its label."""
+"""Setting and look of each line by its label."""
 
 
 def measured_exchanges(folder: Path, cells: tuple[int, ...] = EXCHANGE_CELLS) -> list[dict[str, Any]]:
@@ -92,21 +95,22 @@ def exchange_lines(found: list[dict[str, Any]]) -> list[str]:
 def scaling_figure(counted: Counted) -> Figure:
     """Weak efficiency on the left, strong efficiency on the right, against the number of processes."""
     figure = Figure(figsize=(11.0, 4.6), layout="constrained")
-    weak, *strong = figure.subplots(1, 1 + len(CELLS), sharey=True)
+    weak, *strong = figure.subplots(1, 1 + len(CELLS))
     _draw(weak, {parts: [weak_counts(counted, parts, d) for d in DIVISIONS] for parts in weak_parts()})
     weak.set_title(f"Weak: {WEAK_CELLS} cells a process", fontsize=10)
     for axes, cells in zip(strong, CELLS, strict=True):
         _draw(axes, {parts: [counted.counts(cells, parts, d) for d in DIVISIONS] for parts in PARTS})
         axes.set_title(f"Strong: {cells} cells", fontsize=10)
+        axes.set_ylim(0.0, 1.03)
     weak.set_ylabel("parallel efficiency")
-    weak.set_ylim(0.0, 1.03)
+    weak.set_ylim(0.8, 1.006)
     weak.legend(fontsize=8, loc="lower left")
     return figure
 
 
 def _draw(axes: Axes, counts: dict[int, list[ExchangeCounts]]) -> None:
-    for label, (setting, division, look) in LOOKS.items():
-        number = DIVISIONS.index(division)
+    for label, (setting, look) in LOOKS.items():
+        number = DIVISIONS.index(setting.division)
         efficiency = [setting.time(each[number]).efficiency for each in counts.values()]
         axes.semilogx([*counts], efficiency, label=label, markersize=5, **look)
     axes.axhline(0.9, color="0.5", linewidth=0.8)

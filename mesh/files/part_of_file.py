@@ -11,10 +11,10 @@ import numpy as np
 
 from mesh.arrays import Index
 from mesh.conventions import MESH_VARIABLES
-from mesh.errors import MeshError
 from mesh.files.io import write_arrays
 from mesh.files.stamped_file import NotValidatedError, opened_stamped_file
 from mesh.geometry.sphere import normalize
+from mesh.partition.curve import blocks_along_curve
 from mesh.parts.mesh_part import MeshPart, part_of_rows
 from mesh.safe_files import AnyPath
 from mesh.triangulation.ordering import hilbert_keys
@@ -30,20 +30,15 @@ def read_part(path: AnyPath, blocks: Index, block: int, rings: int) -> MeshPart:
         return part_of_rows(whole, blocks, block, rings)
 
 
-def blocks_along_curve(path: AnyPath, count: int) -> Index:
-    """The block (n_cells,), int32, of every cell of a mesh in a file that is cut into `count` along a Hilbert curve.
+def read_blocks_along_curve(path: AnyPath, count: int) -> Index:
+    """The `count` blocks that `mesh.partition.curve.blocks_along_curve` makes of a mesh in a file, read slab by slab.
 
-    Sizes of blocks differ by one cell at most. Raises `MeshError` where there are fewer cells, and where the file has
-    no stamp or cannot be read.
+    Raises `MeshError` where there are fewer cells, and where the file has no stamp or cannot be read.
     """
     with opened_stamped_file(path) as mesh:
         slabs = zip(*(mesh.slabs(name) for name in ("x_cell", "y_cell", "z_cell")), strict=True)
         keys = np.concatenate([hilbert_keys(normalize(np.stack(points, axis=1))) for points in slabs])
-    if not 0 < count <= len(keys):
-        raise MeshError(f"{path}: {len(keys)} cells cannot be divided into {count} blocks; choose another number")
-    blocks = np.empty(len(keys), np.int32)
-    blocks[np.argsort(keys, kind="stable")] = np.arange(len(keys)) * count // len(keys)
-    return blocks
+        return blocks_along_curve(keys, mesh.slabs("cells_on_edge"), count)
 
 
 def scaled_hash_of_file(path: AnyPath, radius: float) -> str | None:

@@ -8,6 +8,9 @@ from mesh.arrays import Array, Index
 HILBERT_BITS = 20
 """Each face of the cube has 2^20 by 2^20 places on its curve."""
 
+DISORDER = 1.5
+"""A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
+
 
 def renumber(points: Array, triangles: Index) -> tuple[Array, Index]:
     """Points (n, 3) along the curve, and their triangles (m, 3), sorted by their lowest corner."""

@@ -7,6 +7,7 @@ alone; `tests/swe/parallel/test_exchange_counts.py` holds one against the other.
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.partition.cell_graph import CellGraph
@@ -22,12 +23,14 @@ Numbers = Index | Array
 class ExchangeCounts:
     """For each part (n_parts,): its own cells, those of its halo, and what it sends and receives in an exchange.
 
-    A part sends one message to each of its `neighbours` and receives one from each; values are thicknesses of cells and
-    velocities at edges.
+    Its tiles also compute the `halo_cells_computed`, those with numbers between its own: none if it is one run of
+    cells (`swe.tiles.cutting`). A part sends one message to each of its `neighbours` and receives one from each; values
+    are thicknesses of cells and velocities at edges.
     """
 
     own_cells: Numbers
     halo_cells: Numbers
+    halo_cells_computed: Numbers
     neighbours: Numbers
     values_sent: Numbers
     values_received: Numbers
@@ -47,7 +50,7 @@ def count_exchanges(graph: CellGraph, cells_on_edge: Index, partition: Partition
     """The counts of all parts of a mesh that own the blocks of `partition`, each with `rings` rings of halo.
 
     `graph` is that of the mesh's cells, and `cells_on_edge` (n_edges, 2) its own, or `graph.edges` for a mesh made from
-    triangles alone.
+    triangles alone. The mesh is taken to be numbered so that tiles keep its order.
     """
     n_cells, n_parts = graph.n_cells, partition.n_blocks
     blocks = partition.block_of_cell.astype(np.int64)
@@ -61,10 +64,25 @@ def count_exchanges(graph: CellGraph, cells_on_edge: Index, partition: Partition
     return ExchangeCounts(
         own_cells=np.bincount(blocks, minlength=n_parts),
         halo_cells=np.bincount(part, minlength=n_parts),
+        halo_cells_computed=np.bincount(part[_between_own(part, cell, cells_on_edge, blocks)], minlength=n_parts),
         neighbours=np.bincount(reader, minlength=n_parts),
         values_sent=np.bincount(owner, values, n_parts).astype(np.int64),
         values_received=np.bincount(reader, values, n_parts).astype(np.int64),
     )
+
+
+def _between_own(part: Index, cell: Index, cells_on_edge: Index, blocks: Index) -> NDArray[np.bool_]:
+    """Which cells (n,) in the halos of parts (n,) have numbers between those where tiles begin and end.
+
+    That is from the first cell that the part owns, or the lower cell of an edge that it owns, to its last one.
+    """
+    n_cells, n_parts = len(blocks), int(blocks.max()) + 1
+    inside = cells_on_edge[(cells_on_edge >= 0).all(axis=1)]
+    first, last = np.full(n_parts, n_cells), np.zeros(n_parts, np.int64)
+    np.minimum.at(first, blocks, np.arange(n_cells))
+    np.minimum.at(first, blocks[inside[:, 0]], inside.min(axis=1))
+    np.maximum.at(last, blocks, np.arange(n_cells))
+    return (first[part] <= cell) & (cell < last[part])
 
 
 def _edges_in_halo(halo: Index, cells_on_edge: Index, blocks: Index) -> Index:

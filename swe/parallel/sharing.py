@@ -9,7 +9,7 @@ from mpi4py import MPI
 
 from mesh.errors import MeshError
 from mesh.files.io import mesh_hash, whole_arrays, write_arrays
-from mesh.files.part_of_file import blocks_along_curve, read_part, scaled_hash_of_file
+from mesh.files.part_of_file import read_blocks_along_curve, read_part, scaled_hash_of_file
 from mesh.files.whole_mesh import MeshInFile, mesh_in_file
 from mesh.safe_files import remove_leftovers
 from mesh.voronoi_mesh import VoronoiMesh
@@ -92,6 +92,6 @@ def _shared(whole: MeshInFile, rings: int, communicator: MPI.Intracomm) -> MpiPr
             f"{size} processes are too many for a mesh of {whole.n_cells} cells; start {whole.n_cells // FEWEST_CELLS} "
             "at most"
         )
-    blocks = on_first(communicator, lambda: blocks_along_curve(whole.path, size))
+    blocks = on_first(communicator, lambda: read_blocks_along_curve(whole.path, size))
     part = together(communicator, lambda: read_part(whole.path, blocks, rank, rings))
     return MpiProcesses(part, whole, communicator)

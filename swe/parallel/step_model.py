@@ -2,7 +2,7 @@
 
     T = compute + imbalance + halo + overhead + latency x messages + volume / bandwidth + reductions
 
-Each process steps the cells of its part, those of its halo too, as its tiles cover them; after each pass over them it
+Each process steps the cells of its part, and those of its halo that its tiles cover; after each pass over them it
 exchanges values with its neighbours; and once or more in a step all agree on whether the state is sound. The slowest
 process sets the pace. Messages are not hidden behind computation.
 """
@@ -100,12 +100,12 @@ def step_time(counts: ExchangeCounts, pattern: StepPattern, machine: Machine, ne
     overhead = passes * (machine.seconds_per_pass + machine.seconds_per_byte * sent)
     latency = passes * network.latency * counts.neighbours
     volume = passes / network.bandwidth * sent
-    cells = counts.own_cells + counts.halo_cells
+    cells = counts.own_cells + counts.halo_cells_computed
     slowest = int(np.argmax(machine.seconds_per_cell * cells + overhead + latency + volume))
     return StepTime(
         compute=machine.seconds_per_cell * share,
         imbalance=machine.seconds_per_cell * (float(counts.own_cells[slowest]) - share),
-        halo=machine.seconds_per_cell * float(counts.halo_cells[slowest]),
+        halo=machine.seconds_per_cell * float(counts.halo_cells_computed[slowest]),
         overhead=float(overhead[slowest]),
         latency=float(latency[slowest]),
         volume=float(volume[slowest]),
@@ -125,15 +125,19 @@ def rounds_of_reduction(processes: int) -> int:
 def resized(counts: ExchangeCounts, like: ExchangeCounts) -> ExchangeCounts:
     """Parts in the number and with the neighbours and the spread of `counts`, whose mean sizes are those of `like`.
 
-    So the sizes of many large parts follow from those of many small ones and of a few large ones.
+    So the sizes of many large parts follow from those of many small ones and of a few large ones. What no small part
+    has is taken to be the same in all large ones.
     """
 
     def rescaled(values: Numbers, means: Numbers) -> Array:
+        if not values.any():
+            return np.full(len(values), means.mean())
         return np.asarray(values * (means.mean() / values.mean()), dtype=np.float64)
 
     return ExchangeCounts(
         own_cells=rescaled(counts.own_cells, like.own_cells),
         halo_cells=rescaled(counts.halo_cells, like.halo_cells),
+        halo_cells_computed=rescaled(counts.halo_cells_computed, like.halo_cells_computed),
         neighbours=counts.neighbours,
         values_sent=rescaled(counts.values_sent, like.values_sent),
         values_received=rescaled(counts.values_received, like.values_received),

@@ -6,11 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Index
-from mesh.triangulation.ordering import hilbert_order, inverse_order
+from mesh.triangulation.ordering import DISORDER, hilbert_order, inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
-
-DISORDER = 1.5
-"""A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
 
 
 class LocalNumbers:

@@ -1,5 +1,6 @@
 """The tables and the figure of docs/scaling.md, which only a checkout can make."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,18 +12,23 @@ import scaling_page
 import scaling_tables
 from mesh import VoronoiMesh
 from mesh.partition.cell_graph import cell_graph
-from mesh.partition.curve import partition_along_curve
+from mesh.partition.curve import blocks_along_curve
+from mesh.partition.partition import Partition
+from mesh.triangulation.ordering import hilbert_keys
 from postprocess.studies.table1_page import save
 from scaling_counts import Counted
 from scaling_page import exchange_lines, measured_exchanges, scaling_figure
 from scaling_tables import (
     AS_BUILT,
     MENDED,
+    METIS,
+    METIS_OWN_FIRST,
     cause_lines,
     division_lines,
     resizing_lines,
     setting_lines,
     strong_lines,
+    weak_counts,
     weak_lines,
 )
 from swe.parallel.exchange_counts import count_exchanges
@@ -60,9 +66,8 @@ def test_counts_are_those_of_the_mesh_that_the_command_makes(
 ) -> None:
     """Counted once: what is kept is the answer the second time."""
     mesh = icosahedral_mesh
-    expected = count_exchanges(
-        cell_graph(mesh), mesh.cells_on_edge, partition_along_curve(mesh.cell_points, 8), scaling_counts.RINGS
-    )
+    blocks = blocks_along_curve(hilbert_keys(mesh.cell_points), (mesh.cells_on_edge,), 8)
+    expected = count_exchanges(cell_graph(mesh), mesh.cells_on_edge, Partition(blocks, 8), scaling_counts.RINGS)
     found = counted.counts(642, 8, "curve")
     np.testing.assert_array_equal(found.values_sent, expected.values_sent)
     np.testing.assert_array_equal(found.halo_cells, expected.halo_cells)
@@ -93,25 +98,36 @@ def test_tables_have_every_row(counted: Counted) -> None:
     assert f"| {excess:+.0%} |" in division_lines(counted)[3]
 
 
-def test_mended_is_faster_than_as_built_and_large_parts_are_more_efficient(counted: Counted) -> None:
-    large, small = (counted.counts(2562, parts, "METIS") for parts in (4, 64))
+def test_settings_differ_in_what_they_change(counted: Counted) -> None:
+    curve_large, curve_small = (counted.counts(2562, parts, "curve") for parts in (4, 64))
     for setting in (AS_BUILT, MENDED):
-        assert 0.0 < setting.time(small).efficiency < setting.time(large).efficiency < 1.0
-    assert AS_BUILT.time(small).total > 1.5 * MENDED.time(small).total
-    assert MENDED.time(small).halo == 0.0
-    assert 0.0 < MENDED.time(small).overhead < AS_BUILT.time(small).overhead  # values are still packed
-    equal = scaling_tables.SETTINGS["blocks of equal size"]
-    assert AS_BUILT.time(small).imbalance > equal.time(small).imbalance == 0.0
-    efficiency = {line.split("|")[1].strip(): float(line.split("|")[-2]) for line in setting_lines(counted)[2:]}
-    assert efficiency["latency 10 us"] < efficiency["rrk4"] < efficiency["as built"] < efficiency["both"]
+        assert 0.0 < setting.time(curve_small).efficiency < setting.time(curve_large).efficiency < 1.0
+    built, mended = AS_BUILT.time(curve_small), MENDED.time(curve_small)
+    assert built.total > 1.5 * mended.total
+    assert built.halo == 0.0
+    assert 0.0 < mended.overhead < built.overhead  # values are still packed
+    small = counted.counts(2562, 64, "METIS")
+    assert METIS.time(small).halo > METIS_OWN_FIRST.time(small).halo == 0.0
+    equal = replace(METIS, equal_blocks=True)
+    assert METIS.time(small).imbalance > equal.time(small).imbalance == 0.0
+
+
+def test_the_table_of_settings_takes_each_with_its_division(counted: Counted) -> None:
+    efficiency = {line.split("|")[1].strip(): line.split("|")[-2].strip() for line in setting_lines(counted)[2:]}
+    for name, setting in (("as built", AS_BUILT), ("METIS blocks", METIS)):
+        counts = weak_counts(counted, 64, setting.division)
+        assert efficiency[name] == f"{setting.time(counts).efficiency:.3f}"
+    assert efficiency["latency 10 us"] < efficiency["rrk4"] < efficiency["as built"]
+    assert efficiency["METIS blocks"] < efficiency["METIS, own cells numbered first"]
+    assert efficiency["as built"] < efficiency["no calls from Python in a step"]
 
 
 def test_the_figure_has_every_line(counted: Counted, tmp_path: Path) -> None:
     figure = scaling_figure(counted)
-    assert [len(axes.get_lines()) for axes in figure.axes] == [4, 4, 4]
+    assert [len(axes.get_lines()) for axes in figure.axes] == [5, 5, 5]
     weak, _, strong = (axes.get_lines()[0] for axes in figure.axes)
     assert weak.get_xdata().tolist() == [2, 4, 64]
-    assert strong.get_ydata()[-1] == AS_BUILT.time(counted.counts(2562, 64, "METIS")).efficiency
+    assert strong.get_ydata()[-1] == AS_BUILT.time(counted.counts(2562, 64, "curve")).efficiency
     assert save(figure, tmp_path, "scaling") == "![scaling](scaling.png)"
     assert imread(tmp_path / "scaling.png").std() > 0.05
 

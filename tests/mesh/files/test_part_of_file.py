@@ -11,9 +11,12 @@ from mesh import MeshError, VoronoiMesh, read_mesh, scvt_mesh, write_mesh
 from mesh.arrays import Index
 from mesh.files import stamped_file
 from mesh.files.io import mesh_hash
-from mesh.files.part_of_file import blocks_along_curve, read_part, scaled_hash_of_file, write_scaled_copy
+from mesh.files.part_of_file import read_blocks_along_curve, read_part, scaled_hash_of_file, write_scaled_copy
 from mesh.files.stamped_file import NotValidatedError
+from mesh.geometry.sphere import normalize
+from mesh.partition.curve import blocks_along_curve
 from mesh.parts.mesh_part import MeshPart, cut_part
+from mesh.triangulation.ordering import hilbert_keys
 
 EARTH = 6371229.0
 
@@ -62,7 +65,7 @@ def scattered(mesh: VoronoiMesh, count: int) -> Index:
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_parts_are_those_of_the_mesh_in_memory(mesh: VoronoiMesh, mesh_file: Path, count: int) -> None:
-    blocks = blocks_along_curve(mesh_file, count)
+    blocks = read_blocks_along_curve(mesh_file, count)
     for block in range(count):
         assert_same(read_part(mesh_file, blocks, block, 2), cut_part(mesh, blocks, block, 2))
     blocks = scattered(mesh, 4 * count)
@@ -83,7 +86,7 @@ def test_only_what_a_part_needs_is_read(
         return values
 
     monkeypatch.setattr(stamped_file, "read_variable", counted)
-    blocks = blocks_along_curve(tmp_path / "mesh.nc", 20)
+    blocks = read_blocks_along_curve(tmp_path / "mesh.nc", 20)
     part: MeshPart = read_part(tmp_path / "mesh.nc", blocks, 7, 2)
     assert part.mesh.n_cells < 400
     assert max(sizes) <= 5000
@@ -91,15 +94,14 @@ def test_only_what_a_part_needs_is_read(
     assert sum(sizes) < 0.6 * whole
 
 
-def test_blocks_along_the_curve_are_even(mesh: VoronoiMesh, mesh_file: Path) -> None:
-    blocks = blocks_along_curve(mesh_file, 5)
-    assert blocks.dtype == np.int32
-    assert np.ptp(np.bincount(blocks)) <= 1
-    across = (blocks[mesh.cells_on_edge[:, 0]] != blocks[mesh.cells_on_edge[:, 1]]).sum()
-    assert across < 0.5 * mesh.n_edges
+def test_blocks_along_the_curve_are_those_of_the_mesh_in_memory(mesh: VoronoiMesh, mesh_file: Path) -> None:
+    keys = hilbert_keys(normalize(mesh.cell_points))
+    for count in (2, 5):
+        blocks = read_blocks_along_curve(mesh_file, count)
+        np.testing.assert_array_equal(blocks, blocks_along_curve(keys, (mesh.cells_on_edge,), count), strict=True)
     for count in (0, mesh.n_cells + 1):
         with pytest.raises(MeshError, match=rf"cells cannot be divided into {count} blocks"):
-            blocks_along_curve(mesh_file, count)
+            read_blocks_along_curve(mesh_file, count)
 
 
 @pytest.mark.parametrize("radius", [1.0, EARTH])

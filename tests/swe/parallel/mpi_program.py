@@ -73,7 +73,7 @@ def count(comm: MPI.Intracomm, mesh: VoronoiMesh, job: dict[str, Any]) -> dict[s
     part = cut_part(mesh, blocks_by_longitude(mesh, comm.size), comm.rank, rings_needed(Options(**job["options"])))
     traffic = Traffic(comm)
     with traffic.counted():
-        processes = MpiProcesses(part, traffic)
+        processes = MpiProcesses(part, communicator=traffic)
         simulation = Simulation(part.mesh, Williamson5(), time_step=TIME_STEP, processes=processes, **job["options"])
         traffic.messages = traffic.bytes = traffic.reductions = 0
         for _ in range(job["calls"]):

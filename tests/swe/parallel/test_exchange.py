@@ -13,11 +13,12 @@ from mesh.triangulation.ordering import inverse_order
 from swe import ShallowWaterModel, State
 from swe.equations.schemes import Ringler2010
 from swe.integrators import Integrator
-from swe.parallel.processes import OneProcess
+from swe.parallel.processes import OneProcess, Own
 from swe.run.composition import fused_method, plain_method
 from swe.stepping.steppers import Method
 from swe.tiles import cutting
 from swe.tiles.fused import FusedRungeKutta
+from tests.swe.parallel.short_run import blocks_by_longitude
 
 RADIUS = 6.4e6
 STEPS = 3
@@ -183,3 +184,51 @@ def test_values_arrive_in_any_order_of_the_tiles(
     FusedRungeKutta(ShallowWaterModel(shuffled, topography, coriolis, 9.8)).advance(alone, 20.0)
     far = np.abs(shuffled.cell_points @ shuffled.cell_points[0]) < 0.5 * RADIUS**2
     np.testing.assert_array_equal(seen[-1].thickness[far], alone.thickness[far])
+
+
+class Fed(OneProcess):
+    """A process to which others always send the same values at what it does not own."""
+
+    alone = False
+
+    def __init__(self, part: MeshPart, values: State) -> None:
+        self.own = Own(part.own_cells, part.own_edges, part.own_vertices)
+        self._part, self._values = part, values
+
+    def exchange_in(self, cell_order: Index | None, edge_order: Index | None) -> Callable[[State], None]:
+        assert cell_order is None
+        cells, edges = self._part.halo_cells, self._part.halo_edges
+        places = edges if edge_order is None else inverse_order(edge_order)[edges]
+
+        def exchange(state: State) -> None:
+            state.thickness[cells] = self._values.thickness[cells]
+            state.normal_velocity[places] = self._values.normal_velocity[edges]
+
+        return exchange
+
+
+@pytest.mark.parametrize("integrator", ["rk4", "fbrk3"])
+def test_the_rim_that_nobody_sends_holds_no_values_from_before(
+    icosahedral_mesh: VoronoiMesh, integrator: Integrator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Tiles leave out some of it and read it all the same; memory may hold anything, here what is not a number."""
+    mesh = icosahedral_mesh.scaled(RADIUS)
+    topography, coriolis, start = setting(mesh)
+    part = cut_part(mesh, blocks_by_longitude(mesh, 3), 0, Ringler2010.rings)
+    state = State(start.thickness[part.cells], start.normal_velocity[part.edges])
+    state.normal_velocity[(part.mesh.cells_on_edge < 0).any(axis=1)] = 0.0
+    process = Fed(part, state.copy())
+    model = ShallowWaterModel(part.mesh, topography[part.cells], coriolis[part.vertices], 9.8, processes=process)
+    empty = np.empty
+    with monkeypatch.context() as patch:
+        patch.setattr(np, "empty", lambda *sizes, **types: filled(empty(*sizes, **types)))
+        method = fused_method(model, integrator)
+    assert method.advance(state, 20.0, STEPS) == STEPS
+    assert np.isfinite(state.normal_velocity).all()
+
+
+def filled(values: Array) -> Array:
+    """`values`, all of which are not numbers if they can be."""
+    if values.dtype.kind == "f":
+        values.fill(np.nan)
+    return values

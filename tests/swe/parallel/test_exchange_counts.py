@@ -1,14 +1,20 @@
 """What is counted for all parts at once is what real parts send and receive."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from mesh import Partition, VoronoiMesh
 from mesh.arrays import Index
 from mesh.partition.cell_graph import cell_graph
+from mesh.partition.curve import blocks_along_curve
 from mesh.parts.mesh_part import MeshPart, cut_part
+from mesh.triangulation.ordering import hilbert_keys
 from swe.parallel.exchange_counts import ExchangeCounts, count_exchanges
 from swe.parallel.exchange_plan import Messages, bytes_of, messages_read
+from swe.parallel.processes import Own
+from swe.tiles.cutting import build_tiles
 from tests.cut_mesh import without_cap
 
 
@@ -61,7 +67,32 @@ def test_counts_of_a_mesh_with_walls_and_of_edges_in_any_order(icosahedral_mesh:
     assert usual.values_sent.sum() == usual.values_received.sum()
 
 
+def test_tiles_compute_as_many_cells_as_counted(larger_mesh: VoronoiMesh) -> None:
+    """None of the halo where blocks are runs of numbers; and an edge of a part may begin before its first cell."""
+    keys = hilbert_keys(larger_mesh.cell_points)
+    runs = blocks_along_curve(keys, (larger_mesh.cells_on_edge,), 5)
+    assert computed_halo(larger_mesh, runs) == [0] * 5
+    assert min(computed_halo(larger_mesh, sectors(larger_mesh, 5))) > 0
+    turned = replace(larger_mesh, cells_on_edge=larger_mesh.cells_on_edge[:, ::-1])
+    assert max(computed_halo(turned, runs)) > 0
+
+
+def computed_halo(mesh: VoronoiMesh, blocks: Index) -> list[int]:
+    """What is counted, the same as in tiles of real parts."""
+    found = []
+    for block in range(5):
+        part = cut_part(mesh, blocks, block, 2)
+        own = Own(part.own_cells, part.own_edges, part.own_vertices)
+        nothing = np.zeros(part.mesh.n_cells), np.zeros(part.mesh.n_vertices)
+        tiles = build_tiles(part.mesh, *nothing, 1.0, own=own)
+        assert tiles.cell_order is None
+        found.append(int(tiles.first_cell[-1] - tiles.first_cell[0]) - len(part.own_cells))
+    assert counted(mesh, blocks, 2).halo_cells_computed.tolist() == found
+    return found
+
+
 def test_one_part_exchanges_nothing(small_mesh: VoronoiMesh) -> None:
     counts = counted(small_mesh, np.zeros(small_mesh.n_cells, np.int32), 2)
     assert (counts.own_cells.tolist(), counts.halo_cells.tolist()) == ([small_mesh.n_cells], [0])
+    assert counts.halo_cells_computed.tolist() == [0]
     assert (counts.neighbours.tolist(), counts.values_sent.tolist()) == ([0], [0])

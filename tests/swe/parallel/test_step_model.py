@@ -64,8 +64,9 @@ def test_other_runs_send_what_the_model_counts(icosahedral_mesh: VoronoiMesh, tm
 
 
 def counts_of(own: list[float], halo: list[float], neighbours: list[int], sent: list[float]) -> ExchangeCounts:
-    arrays = [np.array(values) for values in (own, halo, neighbours, sent)]
-    return ExchangeCounts(*arrays, values_received=arrays[3][::-1])
+    """Parts that compute `halo` cells of others, half of those that they have."""
+    arrays = [np.array(values) for values in (own, 2 * np.array(halo), halo, neighbours, sent)]
+    return ExchangeCounts(*arrays, values_received=arrays[4][::-1])
 
 
 COUNTS = counts_of([90, 110, 100, 100], [10, 10, 50, 20], [2, 3, 3, 2], [5, 6, 7, 8])
@@ -86,7 +87,9 @@ def test_each_cause_takes_its_time() -> None:
     )
     assert found.total == 1652.0
     assert found.efficiency == 1000.0 / 1652.0
-    unequal = step_time(replace(COUNTS, halo_cells=np.array([1, 1, 1, 1])), step_pattern("rk4"), machine, network)
+    unequal = step_time(
+        replace(COUNTS, halo_cells_computed=np.array([1, 1, 1, 1])), step_pattern("rk4"), machine, network
+    )
     assert (unequal.imbalance, unequal.halo) == (100.0, 10.0)
     few_cells = replace(machine, seconds_per_cell=1e-3)
     many_bytes = step_time(COUNTS, step_pattern("rk4"), few_cells, network)
@@ -126,15 +129,19 @@ def test_resized_parts_keep_their_spread(icosahedral_mesh: VoronoiMesh) -> None:
     """Twice as many cells in the means are twice as many in every part; neighbours stay."""
     large = ExchangeCounts(
         own_cells=2 * COUNTS.own_cells[:2],
-        halo_cells=np.array([30, 30]),
+        halo_cells=np.array([45, 45]),
+        halo_cells_computed=np.array([30, 30]),
         neighbours=np.array([1, 1]),
         values_sent=np.array([26, 26]),
         values_received=np.array([13, 13]),
     )
     found = resized(COUNTS, large)
     np.testing.assert_allclose(found.own_cells, 2 * COUNTS.own_cells)
-    np.testing.assert_allclose(found.halo_cells, COUNTS.halo_cells * 30 / 22.5)
+    np.testing.assert_allclose(found.halo_cells, COUNTS.halo_cells)
+    np.testing.assert_allclose(found.halo_cells_computed, COUNTS.halo_cells_computed * 30 / 22.5)
     np.testing.assert_allclose(found.values_sent, 4 * COUNTS.values_sent)
     np.testing.assert_allclose(found.values_received, 2 * COUNTS.values_received)
     np.testing.assert_array_equal(found.neighbours, COUNTS.neighbours)
     assert found.n_parts == 4
+    compact = replace(COUNTS, halo_cells_computed=np.zeros(4, np.int64))
+    assert resized(compact, large).halo_cells_computed.tolist() == [30.0] * 4
