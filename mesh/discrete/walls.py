@@ -6,6 +6,7 @@ the sum of the kites that are there.
 """
 
 from dataclasses import replace
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -24,8 +25,20 @@ def closed_mesh(mesh: VoronoiMesh) -> VoronoiMesh:
     The missing cell of a wall is its other one, so that differences across vanish; no tangential velocity is made at
     walls, nor from the flow through them; kites of missing cells have no area. Signs of edges (`edge_signs_on_cell`,
     `edge_signs_on_vertex`), which vanish at walls and for missing edges, are those of `mesh`, not of what is given.
-    `mesh` itself where nothing is missing.
+    `mesh` itself where nothing is missing. Made once for each mesh, as model, scheme, terms and tiles all ask for it.
     """
+    if mesh not in _closed:
+        closed = _made_closed(mesh)
+        if closed is mesh:
+            return mesh
+        _closed[mesh] = closed
+    return _closed[mesh]
+
+
+_closed: WeakKeyDictionary[VoronoiMesh, VoronoiMesh] = WeakKeyDictionary()
+
+
+def _made_closed(mesh: VoronoiMesh) -> VoronoiMesh:
     walls = wall_edges(mesh)
     no_cell = mesh.cells_on_vertex < 0
     if not (len(walls) or no_cell.any() or (mesh.edges_on_vertex < 0).any()):
