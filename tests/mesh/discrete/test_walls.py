@@ -49,6 +49,14 @@ def test_no_index_of_a_closed_mesh_is_missing(part: VoronoiMesh) -> None:
         np.testing.assert_array_equal(getattr(closed, name)[present], getattr(part, name)[present])
 
 
+def test_a_mesh_is_closed_once(part: VoronoiMesh, any_mesh: VoronoiMesh) -> None:
+    """All who ask share one, which other meshes do not get; a whole mesh is its own."""
+    closed = closed_mesh(part)
+    assert closed_mesh(part) is closed
+    assert closed_mesh(replace(part)) is not closed
+    assert closed_mesh(any_mesh) is any_mesh
+
+
 def test_kites_of_missing_cells_have_no_area(part: VoronoiMesh) -> None:
     """Whatever a mesh says of them."""
     filled = replace(part, kite_areas_on_vertex=part.kite_areas_on_vertex + 1.0)
