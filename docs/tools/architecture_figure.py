@@ -23,7 +23,7 @@ ROOMS = {
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),
-    "trisk": ("report", "arguments", "cli"),
+    "trisk": ("processes", "report", "arguments", "cli"),
 }
 """Rooms of each package in the order of imports, the lowest first, as `tests/test_architecture.py` holds it."""
 

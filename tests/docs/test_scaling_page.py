@@ -132,6 +132,7 @@ def test_the_figure_has_every_line(counted: Counted, tmp_path: Path) -> None:
     assert imread(tmp_path / "scaling.png").std() > 0.05
 
 
+@pytest.mark.slow
 @needs_mpi
 def test_two_processes_measure_an_exchange(tmp_path: Path) -> None:
     (found,) = measured_exchanges(tmp_path, (162,))

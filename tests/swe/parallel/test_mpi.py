@@ -63,7 +63,7 @@ def require_same_runs(mesh: VoronoiMesh, processes: int, runs: list[dict[str, An
         assert expected["row"]["max_speed"] > 1.0
 
 
-@pytest.mark.parametrize("processes", [2, 3])
+@pytest.mark.parametrize("processes", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_runs_are_those_of_one_process(icosahedral_mesh: VoronoiMesh, processes: int, tmp_path: Path) -> None:
     require_same_runs(icosahedral_mesh, processes, QUICK, tmp_path)
 
@@ -102,6 +102,7 @@ def test_one_ring_fewer_gives_other_bits(icosahedral_mesh: VoronoiMesh, tmp_path
         assert fewer["fields"]["thickness"] != expected, options
 
 
+@pytest.mark.slow
 def test_sums_and_the_end_of_a_run_that_fails(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
     """Sums and extremes are the same in any division; every process stops after the step that one found unsound."""
     failing: list[dict[str, Any]] = [{}, {"integrator": "rrk4"}, {"integrator": "fbrk3"}, {"dissipation": 1e15}]

@@ -52,7 +52,7 @@ def require_counted(
 
 
 @needs_mpi
-@pytest.mark.parametrize("processes", [2, 3])
+@pytest.mark.parametrize("processes", [2, pytest.param(3, marks=pytest.mark.slow)])
 def test_runs_send_what_the_model_counts(icosahedral_mesh: VoronoiMesh, processes: int, tmp_path: Path) -> None:
     require_counted(icosahedral_mesh, processes, RUNS, tmp_path)
 

@@ -153,6 +153,7 @@ def test_what_goes_wrong_is_said_once(mesh_file: Path, tmp_path: Path) -> None:
     assert not (tmp_path / "other").exists()
 
 
+@pytest.mark.slow
 def test_without_mpi4py_it_is_asked_for(mesh_file: Path, tmp_path: Path) -> None:
     (tmp_path / "mpi4py").mkdir()
     (tmp_path / "mpi4py/__init__.py").write_text("raise ImportError")
