@@ -51,8 +51,9 @@ def require_counted(
         assert found["reductions"] == [calls * steps * pattern.reductions] * processes, options
 
 
+@pytest.mark.slow
 @needs_mpi
-@pytest.mark.parametrize("processes", [2, pytest.param(3, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("processes", [2, 3])
 def test_runs_send_what_the_model_counts(icosahedral_mesh: VoronoiMesh, processes: int, tmp_path: Path) -> None:
     require_counted(icosahedral_mesh, processes, RUNS, tmp_path)
 
