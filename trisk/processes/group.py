@@ -13,6 +13,9 @@ SECONDS_TO_MEET = 5.0
 
 SECONDS_BETWEEN_LOOKS = 0.001
 
+SECONDS_TO_BE_HEARD = 0.5
+"""What was said just before all are aborted reaches mpiexec within that time."""
+
 THREADS = "NUMBA_NUM_THREADS"
 
 
@@ -52,6 +55,7 @@ class Group:
         while not arrival.Test():
             if code and time.monotonic() - begin > SECONDS_TO_MEET:
                 print(said.strip(), file=sys.__stderr__, flush=True)
+                time.sleep(SECONDS_TO_BE_HEARD)
                 MPI.COMM_WORLD.Abort(code)
             time.sleep(SECONDS_BETWEEN_LOOKS)
         endings = self._comm.allgather((code, said))
