@@ -71,7 +71,7 @@ def _mix(lanes: NDArray[np.uint64], words: NDArray[np.uint64]) -> None:
     lanes[0], lanes[1], lanes[2], lanes[3] = a, b, c, d
 
 
-@numba.njit(cache=True, nogil=True, inline="always")
+@numba.njit(nogil=True, forceinline=True)
 def _step(lane: np.uint64, word: np.uint64, before: np.uint64, after: np.uint64) -> np.uint64:
     """The next value of a lane; its bits are rotated, as those of a product only reach higher ones."""
     mixed = lane + word * before
