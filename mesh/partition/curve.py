@@ -6,7 +6,7 @@ import numpy as np
 
 from mesh.arrays import Index
 from mesh.partition.partition import require_possible_blocks
-from mesh.triangulation.ordering import DISORDER
+from mesh.triangulation.ordering import keeps_neighbours
 
 
 def blocks_along_curve(keys: Index, edges: Iterable[Index], blocks: int) -> Index:
@@ -26,8 +26,4 @@ def blocks_along_curve(keys: Index, edges: Iterable[Index], blocks: int) -> Inde
     by_number = (np.arange(n_cells) * n_blocks // n_cells).astype(np.int32)
     by_key = np.empty_like(by_number)
     by_key[np.argsort(keys, kind="stable")] = by_number
-    parted = np.zeros(2, np.int64)
-    for ends in edges:
-        first, second = ends[(ends >= 0).all(axis=1)].T
-        parted += [np.count_nonzero(each[first] != each[second]) for each in (by_number, by_key)]
-    return by_number if parted[0] <= DISORDER * parted[1] else by_key
+    return by_number if keeps_neighbours(by_number, by_key, edges) else by_key

@@ -1,5 +1,7 @@
 """Numbering along a space-filling curve, so that neighbours lie close in memory."""
 
+from collections.abc import Iterable
+
 import numba
 import numpy as np
 
@@ -10,6 +12,19 @@ HILBERT_BITS = 20
 
 DISORDER = 1.5
 """A mesh keeps its own numbering unless it separates this many times as many neighbours as a Hilbert curve does."""
+
+
+def keeps_neighbours(by_number: Index, by_curve: Index, edges: Iterable[Index]) -> bool:
+    """Whether a mesh is divided along its own numbering about as well as along a curve.
+
+    That is judged by the neighbours that stand apart in groups (n_cells,) made by either. `edges` gives some rows
+    (n, 2) at a time of its cells on edges, negative where none is.
+    """
+    parted = np.zeros(2, np.int64)
+    for ends in edges:
+        first, second = ends[(ends >= 0).all(axis=1)].T
+        parted += [np.count_nonzero(groups[first] != groups[second]) for groups in (by_number, by_curve)]
+    return bool(parted[0] <= DISORDER * parted[1])
 
 
 def renumber(points: Array, triangles: Index) -> tuple[Array, Index]:

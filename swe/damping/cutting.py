@@ -17,7 +17,7 @@ from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.tiles.layout import MIRROR, RING, TileArrays
-from swe.tiles.numbering import LocalNumbers, order_of_cells, packed
+from swe.tiles.numbering import LocalNumbers, order_of_cells, packed, tile_bounds
 from swe.tiles.rings import in_whole_blocks, ring_array, slots_of_sides
 
 CELLS_PER_TILE = 1280
@@ -47,8 +47,7 @@ def cut_for_dissipation(mesh: VoronoiMesh, cells_per_tile: int = CELLS_PER_TILE)
 
     Raises `InputError` if not even the surroundings of a single cell fit.
     """
-    n_tiles = max(1, round(mesh.n_cells / cells_per_tile))
-    first_cell = np.linspace(0, mesh.n_cells, n_tiles + 1).astype(np.int64)
+    first_cell = tile_bounds(0, mesh.n_cells, cells_per_tile)
     cutter = _Cutter(mesh)
     rank = inverse_order(order_of_cells(cutter.mesh, first_cell))
     lower = rank[cutter.mesh.cells_on_edge].min(axis=1)

@@ -1,4 +1,4 @@
-"""The processes of a run under MPI, each of which holds one part of the mesh. Nothing else imports mpi4py."""
+"""The processes of a run under MPI, each of which holds one part of the mesh."""
 
 from collections.abc import Callable
 from typing import get_args

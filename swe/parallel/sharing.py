@@ -47,8 +47,8 @@ def shared_mesh(
     It then stands in a file beside `place`, from which all processes read their parts, until the context is left.
     """
     written: list[Path] = []
-    whole = on_first(communicator, lambda: _known(file, radius) or _made(make, place, radius, written))
     try:
+        whole = on_first(communicator, lambda: _known(file, radius) or _made(make, place, radius, written))
         yield _shared(whole, rings, communicator)
     finally:
         for path in written:

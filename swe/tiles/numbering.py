@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Index
-from mesh.triangulation.ordering import DISORDER, hilbert_order, inverse_order
+from mesh.triangulation.ordering import hilbert_order, inverse_order, keeps_neighbours
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -50,13 +50,8 @@ def tile_bounds(first: int, last: int, cells_per_tile: int) -> Index:
 def order_of_cells(mesh: VoronoiMesh, first_cell: Index) -> Index:
     """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
     own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
-    tile = np.searchsorted(first_cell, own, side="right")
-
-    def parted(order: Index) -> int:
-        ends = tile[inverse_order(order)][mesh.cells_on_edge]
-        return int(np.count_nonzero(ends[:, 0] != ends[:, 1]))
-
-    return own if parted(own) <= DISORDER * parted(curve) else curve
+    tiles = np.searchsorted(first_cell, own, side="right")
+    return own if keeps_neighbours(tiles, tiles[inverse_order(curve)], (mesh.cells_on_edge,)) else curve
 
 
 def packed(pieces: list[list[NDArray[Any]]], dtype: type) -> tuple[NDArray[Any], Index]:
