@@ -18,6 +18,7 @@ ROOMS = {
         "density",
         "integrals",
         "discrete",
+        "overlap",
         "parts",
         "partition",
         "generation",
@@ -25,7 +26,7 @@ ROOMS = {
     ],
     "swe": ["", "parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
-    "postprocess": ["", "runs", "reference", "compare", "figures", "studies"],
+    "postprocess": ["", "runs", "reference", "compare", "figures", "studies", "adaptation"],
     "trisk": ["processes", "report", "arguments", "cli", ""],
 }
 """Rooms of each package; one may use those that stand before it. The package itself is the first."""

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from cases.base import Case
 from mesh.errors import MeshError
 from mesh.files.io import mesh_hash
 from mesh.plain import recorded
@@ -20,6 +19,7 @@ from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError, RunError
 from swe.output.description import ABSENT_CONFIGURATION
 from swe.output.files import load_record
+from swe.run.case import Case
 from swe.run.simulation import Simulation
 
 TABLE_FILE = "study.csv"

@@ -1,19 +1,12 @@
-"""Reports of studies: figures as PNG, and one HTML page that holds tables and figures and needs no other file."""
+"""Reports of studies: what stands on their pages."""
 
-import base64
-import html
-import io
-import shlex
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
-from matplotlib.figure import Figure
-from PIL import Image
-
 from mesh.discrete.quality import Quality
-from mesh.safe_files import written_aside
-from postprocess.studies.lines import lines_of, named, schemes_of, to_be_named
+from postprocess.studies.lines import lines_of, named, schemes_of
 from postprocess.studies.mesh_study import Member, Plan
+from postprocess.studies.page import table_of, write_page
 from postprocess.studies.study_figures import (
     ERRORS,
     OPERATORS,
@@ -26,24 +19,8 @@ from postprocess.studies.study_folder import CONSERVATION, StudyRow, fitted_orde
 from postprocess.studies.study_maps import closeup_figure, map_figure, place_in_words
 from postprocess.studies.time_study import DRAWN, TimePlan, by_scheme, orders, time_figure
 
-REPORT_FILE = "report.html"
-FIGURES_FOLDER = "figures"
-REPORT_DOTS_PER_INCH = 100
-
 STALLING = 1.0
 """The largest error stalls where its order is less than that of the l2 norm by this much."""
-
-STYLE = """
-body { font-family: sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1em; color: #222; }
-table { border-collapse: collapse; margin: 1em 0; font-size: 85%; }
-th, td { padding: .25em .7em; border-bottom: 1px solid #ddd; text-align: right; white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; }
-.wide { overflow-x: auto; }
-img { max-width: 100%; }
-"""
-
-Columns = Mapping[str, str]
-"""Column of the rows and what stands above it, in order."""
 
 ERROR_COLUMNS = {
     "family": "family",
@@ -100,11 +77,11 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Study
     if any(member.run is not None for member in finest):
         figures["conservation"] = conservation_figure(finest, f"Conservation: {plan.case.title}")
     sections = {
-        "Solution errors": _table(rows, ERROR_COLUMNS),
-        "Fitted orders": _table(_order_rows(compared), {"family": "family", **ERRORS}),
-        "Quality of the meshes": _table(rows, QUALITY_COLUMNS),
-        "Truncation errors of the operators": _table(rows, TRUNCATION_COLUMNS),
-        "Conservation, largest change on the way": _table(rows, CONSERVATION_COLUMNS),
+        "Solution errors": table_of(rows, ERROR_COLUMNS),
+        "Fitted orders": table_of(_order_rows(compared), {"family": "family", **ERRORS}),
+        "Quality of the meshes": table_of(rows, QUALITY_COLUMNS),
+        "Truncation errors of the operators": table_of(rows, TRUNCATION_COLUMNS),
+        "Conservation, largest change on the way": table_of(rows, CONSERVATION_COLUMNS),
     }
     reference = next((str(row["reference"]) for row in compared), "none")
     text = (
@@ -112,7 +89,7 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Study
         f"against: {reference}. Norms are those of Williamson et al. (1992)."
     )
     text = " ".join([text, *_stalling(compared)])
-    return _write_page(plan.folder, f"Study of meshes: {plan.case.title}", text, arguments, sections, figures)
+    return write_page(plan.folder, f"Study of meshes: {plan.case.title}", text, arguments, sections, figures)
 
 
 def write_time_report(plan: TimePlan, rows: Sequence[StudyRow], arguments: Sequence[str]) -> Path:
@@ -120,12 +97,12 @@ def write_time_report(plan: TimePlan, rows: Sequence[StudyRow], arguments: Seque
     heading = f"{plan.case.title}, {plan.mesh.n_cells} cells, day {plan.days:g}"
     fitted = [{"scheme": scheme, **orders(line)} for scheme, line in by_scheme(rows).items()]
     sections = {
-        "Time steps": _table(rows, TIME_COLUMNS),
-        "Fitted orders": _table(fitted, DRAWN),
+        "Time steps": table_of(rows, TIME_COLUMNS),
+        "Fitted orders": table_of(fitted, DRAWN),
     }
     text = f"{heading}. Differences are those from the run with the shortest step."
     figures = {"time_steps": time_figure(rows, heading)}
-    return _write_page(plan.folder, f"Study of time steps: {plan.case.title}", text, arguments, sections, figures)
+    return write_page(plan.folder, f"Study of time steps: {plan.case.title}", text, arguments, sections, figures)
 
 
 def _order_rows(rows: Sequence[StudyRow]) -> list[StudyRow]:
@@ -156,56 +133,3 @@ def _stalling(rows: Sequence[StudyRow]) -> list[str]:
                 f"{worst['worst_to_irregular']:.1f} mean distances from the nearest cell that is no hexagon."
             )
     return sentences
-
-
-def _table(rows: Sequence[StudyRow], columns: Columns) -> str:
-    """An HTML table of those columns that any row has; schemes where they are to be named, beside the first column."""
-    if to_be_named(schemes_of(rows)):
-        first, *others = columns.items()
-        columns = dict([first, ("scheme", "scheme"), *others])
-    shown = {name: title for name, title in columns.items() if any(row.get(name, "") != "" for row in rows)}
-    head = "".join(f"<th>{html.escape(title)}</th>" for title in shown.values())
-    body = "".join(
-        "<tr>" + "".join(f"<td>{html.escape(_in_words(row.get(name, '')))}</td>" for name in shown) + "</tr>\n"
-        for row in rows
-    )
-    return f'<div class="wide"><table>\n<tr>{head}</tr>\n{body}</table></div>'
-
-
-def _in_words(value: float | str) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
-
-
-def _write_page(
-    folder: Path,
-    title: str,
-    text: str,
-    arguments: Sequence[str],
-    sections: Mapping[str, str],
-    figures: Mapping[str, Figure],
-) -> Path:
-    (folder / FIGURES_FOLDER).mkdir(exist_ok=True)
-    parts = [f"<h1>{html.escape(title)}</h1>\n<p>{html.escape(text)}</p>"]
-    parts.append(f"<p>Made by <code>{html.escape(shlex.join(arguments))}</code></p>")
-    parts += [f"<h2>{html.escape(name)}</h2>\n{table}" for name, table in sections.items()]
-    for name, figure in figures.items():
-        image = _png(figure)
-        with written_aside(folder / FIGURES_FOLDER / f"{name}.png") as aside:
-            aside.write_bytes(image)
-        source = f"data:image/png;base64,{base64.b64encode(image).decode()}"
-        parts.append(f'<p><img src="{source}" alt="{html.escape(name)}"></p>')
-    path = folder / REPORT_FILE
-    start = f'<!doctype html>\n<html lang="en">\n<meta charset="utf-8">\n<title>{html.escape(title)}</title>'
-    with written_aside(path) as aside:
-        aside.write_text(
-            f"{start}\n<style>{STYLE}</style>\n" + "\n".join(parts) + "\n</html>\n", "utf-8", "backslashreplace"
-        )
-    return path
-
-
-def _png(figure: Figure) -> bytes:
-    """The figure as PNG with a palette, a third of the size of one in true colour."""
-    full, small = io.BytesIO(), io.BytesIO()
-    figure.savefig(full, dpi=REPORT_DOTS_PER_INCH, format="png")
-    Image.open(full).convert("RGB").quantize(256).save(small, format="PNG", optimize=True)
-    return small.getvalue()

@@ -14,10 +14,11 @@ from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.studies.mesh_study import Plan
+from postprocess.studies.page import write_page
 from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure, truncation_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
 from postprocess.studies.study_maps import draw_closeup
-from postprocess.studies.study_report import _write_page, write_mesh_report, write_time_report
+from postprocess.studies.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 
@@ -118,7 +119,7 @@ def test_report_holds_everything(plan: Plan, study: tuple) -> None:
 
 def test_a_page_is_written_over_the_one_before(tmp_path: Path) -> None:
     for text in ("first", "second"):
-        page = _write_page(tmp_path, "Title", text, ["trisk"], {}, {"chart": Figure()})
+        page = write_page(tmp_path, "Title", text, ["trisk"], {}, {"chart": Figure()})
         assert f"<p>{text}</p>" in page.read_text()
     assert [path.name for path in (tmp_path / "figures").iterdir()] == ["chart.png"]
 

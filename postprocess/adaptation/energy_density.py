@@ -1,0 +1,75 @@
+"""The density of a mesh that follows the kinetic energy of a run, after Ju, Ringler and Gunzburger (2011), section 4.2.
+
+rho = max(FLOOR, KE / KEmax)^POWER, smoothed before the power is taken. Spacings go like rho^(-1/4), so that they vary
+by 1 / FLOOR.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.conventions import BY_NAME
+from mesh.mesh_request import MeshRequest
+from mesh.safe_files import dataset, written_aside
+from postprocess.runs.reading import DAY_TOLERANCE, Run
+from swe.errors import InputError
+
+VARIABLE = "kinetic_energy"
+FLOOR, POWER, SMOOTHING = 0.1, 4.0, 20
+
+AVERAGED_SHARE = 0.5
+"""Means in time go over the snapshots of this last part of a run, which has then forgotten how it began."""
+
+
+def time_mean(run: Run, field: str, first: float | None = None, last: float | None = None) -> Array:
+    """The mean of a field over the snapshots of the second half of a run, or from day `first` to day `last` of it."""
+    last = run.days[-1] if last is None else last
+    first = last - AVERAGED_SHARE * (last - run.days[0]) if first is None else first
+    days = [day for day in run.days if first - DAY_TOLERANCE <= day <= last + DAY_TOLERANCE]
+    if not days:
+        raise InputError(f"{run.directory} has no snapshot from day {first:g} to day {last:g}; run it again")
+    total = np.zeros_like(run.snapshot(days[0]).fields[field])
+    for day in days:
+        total += run.snapshot(day).fields[field]
+    return total / len(days)
+
+
+def write_energy(run: Run, path: Path) -> None:
+    """Write the mean kinetic energy of a run, over its largest value, to a file that `density` of a mesh takes.
+
+    Raises `InputError` where nothing moves.
+    """
+    energy = time_mean(run, VARIABLE)
+    if not energy.max() > 0.0:
+        raise InputError(f"{run.directory} has no kinetic energy that a mesh could follow; run it for longer")
+    with written_aside(path) as aside, dataset(aside, "w") as file:
+        file.createDimension("nCells", run.cells)
+        for name in ("x_cell", "y_cell", "z_cell"):
+            coordinate = file.createVariable(BY_NAME[name].file_name, "f8", ("nCells",))
+            coordinate[:] = getattr(run.mesh, name)
+        variable = file.createVariable(VARIABLE, "f8", ("nCells",))
+        variable.setncatts({"units": "1", "long_name": "mean kinetic energy over its largest value"})
+        variable[:] = energy / energy.max()
+
+
+def request_for(cells: int, path: Path, tolerance: float) -> MeshRequest:
+    """A mesh of so many cells, of a residual of `tolerance`, for what `write_energy` has written to `path`."""
+    return MeshRequest(
+        cells,
+        path,
+        tolerance=tolerance,
+        density_variable=VARIABLE,
+        density_floor=FLOOR,
+        density_power=POWER,
+        density_smoothing=SMOOTHING,
+    )
+
+
+def asked_spacing(density: Array, area: Array) -> Array:
+    """Spacings (n_cells,) that go like density^(-1/4), of so many cells that together they have the `area`, squared.
+
+    The hexagon of spacing h has the area sqrt(3)/2 h^2.
+    """
+    shape = density**-0.25
+    return shape * np.sqrt(area.sum() / (np.sqrt(3.0) / 2.0 * (shape**2).sum()))

@@ -1,0 +1,173 @@
+"""Rounds of running a case and making a mesh for what the run shows."""
+
+import json
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from mesh.files.io import read_mesh, write_mesh
+from mesh.generation.pipeline import generate_mesh
+from mesh.mesh_request import MeshRequest
+from mesh.plain import recorded
+from mesh.safe_files import written_aside
+from mesh.voronoi_mesh import VoronoiMesh
+from postprocess.adaptation.carried import Continued, carried_over
+from postprocess.adaptation.energy_density import request_for, write_energy
+from postprocess.runs.reading import Run
+from postprocess.studies.study_folder import Task, Tell, require_days
+from swe.configuration import Options, SchemeName
+from swe.errors import InputError, RunError
+from swe.run.case import Case
+from swe.state import State
+
+PLAN_FILE = "plan.json"
+MOST_ROUNDS = 100
+SNAPSHOTS = 20
+"""Snapshots of a round, half of which go into its means."""
+
+MESH_TOLERANCE = 1e-4
+"""Residual, in mean spacings, at which an adapted mesh is taken: the field that it follows is known less well."""
+
+MeshMaker = Callable[[MeshRequest], VoronoiMesh]
+"""Makes the mesh of a request, on the unit sphere."""
+
+
+@dataclass(frozen=True)
+class Plan:
+    """`case` run for `days` on a uniform mesh of `cells` cells, then on each of `rounds` meshes that follow it.
+
+    Each round goes on from the state that the one before has reached, or, with `begin_again`, from the start of the
+    case. A uniform mesh of `fine` cells, run for as long, is what all are measured against. Everything is in `folder`.
+    """
+
+    folder: Path
+    case: Case
+    cells: int
+    fine: int
+    days: float
+    rounds: int
+    begin_again: bool = False
+    scheme: SchemeName = Options.scheme
+
+    def __post_init__(self) -> None:
+        require_days(self.days)
+        if not 1 <= self.rounds <= MOST_ROUNDS:
+            raise InputError(f"a mesh cannot be adapted {self.rounds} times; ask for 1 to {MOST_ROUNDS} rounds")
+        if not self.fine > self.cells:
+            raise InputError(
+                f"the fine mesh of {self.fine} cells is to be finer than one of {self.cells}; ask for more cells"
+            )
+
+    @property
+    def snapshot_days(self) -> float:
+        """Days between snapshots."""
+        return self.days / SNAPSHOTS
+
+    def recorded(self) -> dict[str, Any]:
+        """What is asked for, as numbers and words."""
+        asked = {name: value for name, value in vars(self).items() if name not in ("folder", "case")}
+        return {"case": self.case.name, "parameters": recorded(self.case.parameters()), **asked}
+
+    def days_of_whole(self) -> float:
+        """Days that the fine run and the uniform one of as many cells take together with all rounds."""
+        return self.days if self.begin_again else self.days * (self.rounds + 1)
+
+
+@dataclass(frozen=True)
+class Round:
+    """One round: its number, 0 on the uniform mesh, the day of the case on which it began, and its run."""
+
+    number: int
+    first_day: float
+    run: Run
+
+
+@dataclass(frozen=True)
+class Adaptation:
+    """The rounds, and the runs that they are measured against: uniform meshes of as many cells and of more."""
+
+    rounds: tuple[Round, ...]
+    uniform: Run
+    fine: Run
+
+
+def global_mesh(request: MeshRequest) -> VoronoiMesh:
+    """The mesh of a request on the whole sphere."""
+    return generate_mesh(request).mesh
+
+
+def adapt(plan: Plan, progress: bool, tell: Tell, make: MeshMaker = global_mesh) -> Adaptation:
+    """Carry out a plan; what the folder holds already is taken from there, and a run that was broken off goes on.
+
+    Raises `InputError` or `MeshError` where a mesh or a run cannot be made, `RunError` where a run fails.
+    """
+    _require_same_plan(plan)
+    runner = _Runner(plan, progress, tell, make)
+    rounds = [Round(0, 0.0, runner.uniform("round-0", plan.cells, plan.days))]
+    while len(rounds) <= plan.rounds:
+        rounds.append(runner.following(rounds[-1]))
+    whole = plan.days_of_whole()
+    uniform = rounds[0].run if plan.begin_again else runner.uniform("uniform", plan.cells, whole)
+    return Adaptation(tuple(rounds), uniform, runner.uniform("fine", plan.fine, whole))
+
+
+def _require_same_plan(plan: Plan) -> None:
+    """Keep what the plan asks for beside its runs; raise `InputError` if the folder was begun with another plan."""
+    plan.folder.mkdir(parents=True, exist_ok=True)
+    path = plan.folder / PLAN_FILE
+    content = json.dumps(plan.recorded(), indent=2) + "\n"
+    try:
+        before = path.read_text()
+    except FileNotFoundError:
+        with written_aside(path) as aside:
+            aside.write_text(content)
+        return
+    if before != content:
+        raise InputError(f"{path} tells of another case, mesh or length; choose another folder, or remove this one")
+
+
+class _Runner:
+    """Makes meshes and runs of a plan, or finds them."""
+
+    def __init__(self, plan: Plan, progress: bool, tell: Tell, make: MeshMaker) -> None:
+        self._plan, self._progress, self._tell, self._make = plan, progress, tell, make
+
+    def uniform(self, name: str, cells: int, days: float) -> Run:
+        """The case from its start on a uniform mesh."""
+        mesh = self._mesh(f"uniform-{cells}.nc", MeshRequest(cells))
+        return self._run(name, self._plan.case, mesh, days)
+
+    def following(self, before: Round) -> Round:
+        """The round on a mesh made for what the round `before` shows."""
+        plan, number = self._plan, before.number + 1
+        energy = plan.folder / f"energy-{number}.nc"
+        if not energy.exists():
+            write_energy(before.run, energy)
+        mesh = self._mesh(f"mesh-{number}.nc", request_for(plan.cells, energy, MESH_TOLERANCE))
+        if plan.begin_again:
+            return Round(number, 0.0, self._run(f"round-{number}", plan.case, mesh, plan.days))
+        first_day = before.first_day + plan.days
+        target = mesh.scaled(plan.case.radius)
+        fields = before.run.last_snapshot().fields
+        reached = State(fields["thickness"], fields["normal_velocity"])
+        state = carried_over(plan.case, reached, before.run.mesh, target, before.run.sampling)
+        case = Continued(plan.case, first_day, state)
+        return Round(number, first_day, self._run(f"round-{number}", case, mesh, plan.days))
+
+    def _mesh(self, name: str, request: MeshRequest) -> VoronoiMesh:
+        """The mesh of this name, made if the folder has none."""
+        path = self._plan.folder / name
+        if not path.exists():
+            self._tell(f"{name}: {request.cells} cells")
+            write_mesh(self._make(request), path)
+        return read_mesh(path)
+
+    def _run(self, name: str, case: Case, mesh: VoronoiMesh, days: float) -> Run:
+        """The run of this name, made unless it is there already."""
+        plan = self._plan
+        task = Task(plan.folder / name, case, mesh, days, plan.snapshot_days, scheme=plan.scheme)
+        run, reason = task.carry_out(self._progress, self._tell)
+        if run is None:
+            raise RunError(f"{name} of {plan.folder}: {reason}")
+        return run
