@@ -13,6 +13,7 @@ ROOMS = {
         "geometry",
         "triangulation",
         "density",
+        "regions",
         "integrals",
         "discrete",
         "parts",
