@@ -1,7 +1,7 @@
 """The coastline of a sea, as smooth as the cells of a mesh can follow it.
 
 Two discs of half a spacing's radius roll along the coast. The one on land must fit everywhere, so spits and islands
-narrower than the spacing go; then that at sea, so channels and inlets narrower than the spacing go. What is left between
+narrower than the spacing go; then that at sea, so channels and inlets narrower than the spacing go. Land left between
 two waters that nearly meet opens where it is thinner than half a spacing.
 """
 

@@ -19,8 +19,8 @@ GEOJSON = (".geojson", ".json")
 def find_region(text: str) -> Region:
     """The region that `text` names.
 
-    That is a box in degrees, `WEST,EAST,SOUTH,NORTH`; a file of polygons, `FILE.geojson`; a mask or a signed distance in
-    a file, `FILE.nc:VARIABLE`; or one of `NAMED`. Raises `MeshError` where it is none of these, or cannot be used.
+    That is a box in degrees, `WEST,EAST,SOUTH,NORTH`; a file of polygons, `FILE.geojson`; a mask or a signed distance
+    in a file, `FILE.nc:VARIABLE`; or one of `NAMED`. Raises `MeshError` where it is none of these, or cannot be used.
     """
     if text in NAMED:
         return NAMED[text]()
