@@ -1,7 +1,7 @@
 """The mesh of some cells of another, in the conventions of the MPAS mesh culler, for files that others read.
 
-Beyond `mesh.parts.cutting.without_cells`, an edge with one cell has that cell first, so that its normal leaves the mesh,
-and vertices at which a cell is missing are marked. What is missing stays -1 in its place round a vertex.
+Beyond `mesh.parts.cutting.without_cells`, an edge with one cell has that cell first, so that its normal leaves the
+mesh, and vertices at which a cell is missing are marked. What is missing stays -1 in its place round a vertex.
 """
 
 from dataclasses import replace
@@ -29,7 +29,8 @@ def culled(mesh: VoronoiMesh, kept: NDArray[np.bool_]) -> VoronoiMesh:
     if not kept.any():
         raise MeshError(f"none of the {mesh.n_cells} cells is kept; choose a region that holds the centre of a cell")
     part = _with_cells_first(without_cells(mesh, ~kept))
-    result = replace(part, boundary_vertex=(part.cells_on_vertex < 0).any(axis=1).astype(np.int32))
+    at_boundary: NDArray[np.bool_] = (part.cells_on_vertex < 0).any(axis=1)
+    result = replace(part, boundary_vertex=at_boundary.astype(np.int32))
     if is_validated(mesh):
         remember_validated(result)
     return result
