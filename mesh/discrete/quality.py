@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
+from mesh.discrete.walls import boundary_vertices, has_walls
 from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
 from mesh.integrals.moments import masses_and_moments
 from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
@@ -24,6 +25,8 @@ class Quality:
     equilateral. Distances are chords. `residual` is the largest distance between a generator that was free to move and
     the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known;
     `obtuse` counts Delaunay triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    Beside walls only neighbours and triangles that are there count, and cells as they are; what nothing counts for is
+    not a number.
     """
 
     cells: int
@@ -57,13 +60,15 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
 def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
     chords = edge_chords(mesh)
     sigma, q = neighbour_distance_ratio(mesh, chords), triangle_quality(mesh, chords)
+    if has_walls(mesh):
+        chords, sigma, q = (values[np.isfinite(values)] for values in (chords, sigma, q))
     return Quality(
         cells=mesh.n_cells,
-        mu=float(chords.max() / chords.min()),
-        sigma_avg=float(sigma.mean()),
-        sigma_min=float(sigma.min()),
-        q_avg=float(q.mean()),
-        q_min=float(q.min()),
+        mu=float(chords.max() / chords.min()) if len(chords) else np.nan,
+        sigma_avg=float(sigma.mean()) if len(sigma) else np.nan,
+        sigma_min=float(sigma.min(initial=np.inf)) if len(sigma) else np.nan,
+        q_avg=float(q.mean()) if len(q) else np.nan,
+        q_min=float(q.min()) if len(q) else np.nan,
         residual=float("nan") if density is None else centroid_residual(mesh, density),
         obtuse=int(np.count_nonzero(obtuse_triangles(mesh, chords))),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
