@@ -13,8 +13,10 @@ ROOMS = {
         "geometry",
         "triangulation",
         "density",
+        "regions",
         "integrals",
         "discrete",
+        "overlap",
         "parts",
         "partition",
         "generation",
@@ -22,8 +24,8 @@ ROOMS = {
     ),
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
-    "postprocess": ("runs", "reference", "compare", "figures", "studies"),
-    "trisk": ("processes", "report", "arguments", "cli"),
+    "postprocess": ("runs", "reference", "compare", "figures", "studies", "adaptation"),
+    "trisk": ("processes", "report", "arguments", "cli", "mesh_cli"),
 }
 """Rooms of each package in the order of imports, the lowest first, as `tests/test_architecture.py` holds it."""
 
