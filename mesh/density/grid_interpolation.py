@@ -11,6 +11,7 @@ from mesh.density.named import Density
 from mesh.density.scattered import tell_of_part
 from mesh.errors import MeshError
 from mesh.geometry.angles import TURN, eastward
+from mesh.geometry.arctangent import arctangent
 from mesh.geometry.vectors import compiled
 
 Smooth = Callable[[Array], Array]
@@ -68,8 +69,8 @@ def _bilinear(points: Array, west: float, latitude: Array, longitude: Array, val
     result = np.empty(len(points))
     for point in range(len(points)):
         x, y, z = points[point, 0], points[point, 1], points[point, 2]
-        east = (np.arctan2(y, x) - west) % TURN
-        row, up = _interval(latitude, np.arctan2(z, np.hypot(x, y)))
+        east = (arctangent(y, x) - west) % TURN
+        row, up = _interval(latitude, arctangent(z, np.sqrt(x * x + y * y)))
         column, along = _interval(longitude, east)
         # In this form equal values give just that value between them.
         low = values[row, column] + along * (values[row, column + 1] - values[row, column])
@@ -81,7 +82,7 @@ def _bilinear(points: Array, west: float, latitude: Array, longitude: Array, val
 @compiled
 def _interval(edges: Array, place: float) -> tuple[int, float]:
     """The interval of ascending `edges` (n,) that holds a place, and how far along it lies, from zero to one."""
-    interval = min(max(np.searchsorted(edges, place, side="right") - 1, 0), len(edges) - 2)
+    interval = min(max(int(np.searchsorted(edges, place, side="right")) - 1, 0), len(edges) - 2)
     share = (place - edges[interval]) / (edges[interval + 1] - edges[interval])
     return interval, min(max(share, 0.0), 1.0)
 

@@ -15,14 +15,18 @@ transition, and gamma the ratio of widths far outside and inside. They are conti
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
-from mesh.arrays import Array, by_blocks, row_loop
+from mesh.arrays import Array, by_blocks
 from mesh.errors import MeshError
+from mesh.geometry.arctangent import arctangent
 from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
-from mesh.geometry.vectors import compiled
 
 Density = Callable[[Array], Array]
+
+values_loop = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
+"""Loops without branches, which take several points at a time; a check of each division would forbid that."""
 
 
 def uniform(points: Array) -> Array:
@@ -132,53 +136,53 @@ def _check(values: Array, points: Array) -> None:
         )
 
 
-@row_loop
+@values_loop
 def _circle_values(
     points: Array, latitude: float, longitude: float, radius: float, transition: float, ratio: float
 ) -> Array:
     """Values (m,) of `RefinedCircle` at unit vectors (m, 3)."""
-    values = np.ones(len(points))
+    values = np.empty(len(points))
     east_x, east_y = np.cos(longitude), np.sin(longitude)
     for row in range(len(points)):
         rise = _latitude(points, row) - latitude
-        if abs(rise) < radius + transition:
-            distance = np.hypot(rise, _longitude_from(points, row, east_x, east_y))
-            values[row] = _blend(distance - radius, transition, ratio)
+        side = _longitude_from(points, row, east_x, east_y)
+        values[row] = _blend(np.sqrt(rise * rise + side * side) - radius, transition, ratio)
     return values
 
 
-@row_loop
+@values_loop
 def _box_values(
     points: Array, south: float, north: float, west: float, east: float, transition: float, ratio: float
 ) -> Array:
     """Values (m,) of `RefinedBox` at unit vectors (m, 3)."""
-    values = np.ones(len(points))
+    values = np.empty(len(points))
     middle, half_width = 0.5 * (west + east), 0.5 * (east - west)
     east_x, east_y = np.cos(middle), np.sin(middle)
     for row in range(len(points)):
         latitude = _latitude(points, row)
-        beyond_end = max(south - latitude, latitude - north, 0.0)
-        if beyond_end < transition:
-            beyond_side = max(abs(_longitude_from(points, row, east_x, east_y)) - half_width, 0.0)
-            values[row] = _blend(np.hypot(beyond_side, beyond_end), transition, ratio)
+        end = max(south - latitude, latitude - north, 0.0)
+        side = max(abs(_longitude_from(points, row, east_x, east_y)) - half_width, 0.0)
+        values[row] = _blend(np.sqrt(side * side + end * end), transition, ratio)
     return values
 
 
-@compiled
+@values_loop
 def _latitude(points: Array, row: int) -> float:
     """Latitude of a point, radians."""
-    return np.arctan2(points[row, 2], np.hypot(points[row, 0], points[row, 1]))
+    x, y, z = points[row, 0], points[row, 1], points[row, 2]
+    return arctangent(z, np.sqrt(x * x + y * y))
 
 
-@compiled
+@values_loop
 def _longitude_from(points: Array, row: int, east_x: float, east_y: float) -> float:
     """Longitude of a point, in [-pi, pi], from the meridian through (east_x, east_y, 0)."""
     x, y = points[row, 0], points[row, 1]
-    return np.arctan2(y * east_x - x * east_y, x * east_x + y * east_y)
+    return arctangent(y * east_x - x * east_y, x * east_x + y * east_y)
 
 
-@compiled
+@values_loop
 def _blend(distance: float, transition: float, ratio: float) -> float:
     """ratio^4 where `distance` is not positive, one beyond the transition, the fourth power of a line in between."""
     share = min(max(distance / transition, 0.0), 1.0)
-    return ((1.0 - share) * ratio + share) ** 4
+    width = (1.0 - share) * ratio + share
+    return (width * width) * (width * width)

@@ -142,6 +142,7 @@ def converge(request: MeshRequest, density: Density, limits: Limits, callback: C
     """
     begin = time.perf_counter()
     cells, method = cells_of(request), request.method
+    triangles: Index | None
     if method not in METHODS:
         raise MeshError(f"there is no optimisation method named '{method}'; choose one of {', '.join(METHODS)}")
     if method == "multilevel":
