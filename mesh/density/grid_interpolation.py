@@ -5,13 +5,14 @@ from typing import Literal
 
 import numpy as np
 
-from mesh.arrays import Array
+from mesh.arrays import Array, by_blocks, row_loop
 from mesh.density.field_coordinates import QUARTER
 from mesh.density.named import Density
 from mesh.density.scattered import tell_of_part
 from mesh.errors import MeshError
 from mesh.geometry.angles import TURN, eastward
-from mesh.geometry.sphere import to_lonlat
+from mesh.geometry.arctangent import arctangent
+from mesh.geometry.vectors import compiled
 
 Smooth = Callable[[Array], Array]
 
@@ -52,16 +53,38 @@ def density_on_grid(
     latitude = np.concatenate([south[0], latitude[1:-1], north[0][::-1]])
     values = np.concatenate([south[1], values[1:-1], north[1][::-1]])
     longitude, values = _closed_circle(longitude, values, whole_circle)
-    # Loading it takes a tenth of a second, and only densities from files need it.
-    from scipy.interpolate import RegularGridInterpolator
-
-    interpolate = RegularGridInterpolator((latitude, longitude), values)
 
     def density(points: Array) -> Array:
-        east, north = to_lonlat(points)
-        return interpolate(np.stack([north, eastward(east - west)], axis=-1))
+        return by_blocks(lambda rows: _bilinear(rows, west, latitude, longitude, values), np.ascontiguousarray(points))
 
     return density
+
+
+@row_loop
+def _bilinear(points: Array, west: float, latitude: Array, longitude: Array, values: Array) -> Array:
+    """Bilinear interpolation at unit vectors (m, 3) of values (rows, columns) that hold the whole sphere.
+
+    Latitudes (rows,) ascend from pole to pole; longitudes (columns,) ascend from `west` and hold [0, 2 pi].
+    """
+    result = np.empty(len(points))
+    for point in range(len(points)):
+        x, y, z = points[point, 0], points[point, 1], points[point, 2]
+        east = (arctangent(y, x) - west) % TURN
+        row, up = _interval(latitude, arctangent(z, np.sqrt(x * x + y * y)))
+        column, along = _interval(longitude, east)
+        # In this form equal values give just that value between them.
+        low = values[row, column] + along * (values[row, column + 1] - values[row, column])
+        high = values[row + 1, column] + along * (values[row + 1, column + 1] - values[row + 1, column])
+        result[point] = low + up * (high - low)
+    return result
+
+
+@compiled
+def _interval(edges: Array, place: float) -> tuple[int, float]:
+    """The interval of ascending `edges` (n,) that holds a place, and how far along it lies, from zero to one."""
+    interval = min(max(int(np.searchsorted(edges, place, side="right")) - 1, 0), len(edges) - 2)
+    share = (place - edges[interval]) / (edges[interval + 1] - edges[interval])
+    return interval, min(max(share, 0.0), 1.0)
 
 
 def _smooth_grid(values: Array, edge: Literal["wrap", "edge"]) -> Array:

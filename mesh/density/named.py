@@ -15,14 +15,18 @@ transition, and gamma the ratio of widths far outside and inside. They are conti
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numba
 import numpy as np
 
-from mesh.arrays import Array
+from mesh.arrays import Array, by_blocks
 from mesh.errors import MeshError
-from mesh.geometry.angles import about_zero
+from mesh.geometry.arctangent import arctangent
 from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
 
 Density = Callable[[Array], Array]
+
+values_loop = numba.njit(cache=True, nogil=True, error_model="numpy", fastmath=False)
+"""Loops without branches, which take several points at a time; a check of each division would forbid that."""
 
 
 def uniform(points: Array) -> Array:
@@ -42,9 +46,8 @@ class RefinedCircle:
 
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
-        longitude, latitude = to_lonlat(points)
-        distance = np.hypot(latitude - self.latitude, about_zero(longitude - self.longitude))
-        return _blend(distance - self.radius, self.transition, self.ratio)
+        shape = (self.latitude, self.longitude, self.radius, self.transition, self.ratio)
+        return by_blocks(lambda rows: _circle_values(rows, *shape), np.ascontiguousarray(points))
 
 
 @dataclass(frozen=True)
@@ -60,11 +63,8 @@ class RefinedBox:
 
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
-        longitude, latitude = to_lonlat(points)
-        middle, half_width = 0.5 * (self.west + self.east), 0.5 * (self.east - self.west)
-        beyond_side = np.maximum(np.abs(about_zero(longitude - middle)) - half_width, 0.0)
-        beyond_end = np.maximum(np.maximum(self.south - latitude, latitude - self.north), 0.0)
-        return _blend(np.hypot(beyond_side, beyond_end), self.transition, self.ratio)
+        shape = (self.south, self.north, self.west, self.east, self.transition, self.ratio)
+        return by_blocks(lambda rows: _box_values(rows, *shape), np.ascontiguousarray(points))
 
 
 @dataclass(frozen=True)
@@ -84,6 +84,9 @@ class SmoothTransition:
 
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
+        return by_blocks(self._values, points)
+
+    def _values(self, points: Array) -> Array:
         center = from_lonlat(np.array(self.longitude), np.array(self.latitude))
         arc = arc_length(points, np.broadcast_to(center, points.shape))
         share = 0.5 * (1.0 + np.tanh((arc - self.radius) / self.transition))
@@ -133,7 +136,53 @@ def _check(values: Array, points: Array) -> None:
         )
 
 
-def _blend(distance: Array, transition: float, ratio: float) -> Array:
+@values_loop
+def _circle_values(
+    points: Array, latitude: float, longitude: float, radius: float, transition: float, ratio: float
+) -> Array:
+    """Values (m,) of `RefinedCircle` at unit vectors (m, 3)."""
+    values = np.empty(len(points))
+    east_x, east_y = np.cos(longitude), np.sin(longitude)
+    for row in range(len(points)):
+        rise = _latitude(points, row) - latitude
+        side = _longitude_from(points, row, east_x, east_y)
+        values[row] = _blend(np.sqrt(rise * rise + side * side) - radius, transition, ratio)
+    return values
+
+
+@values_loop
+def _box_values(
+    points: Array, south: float, north: float, west: float, east: float, transition: float, ratio: float
+) -> Array:
+    """Values (m,) of `RefinedBox` at unit vectors (m, 3)."""
+    values = np.empty(len(points))
+    middle, half_width = 0.5 * (west + east), 0.5 * (east - west)
+    east_x, east_y = np.cos(middle), np.sin(middle)
+    for row in range(len(points)):
+        latitude = _latitude(points, row)
+        end = max(south - latitude, latitude - north, 0.0)
+        side = max(abs(_longitude_from(points, row, east_x, east_y)) - half_width, 0.0)
+        values[row] = _blend(np.sqrt(side * side + end * end), transition, ratio)
+    return values
+
+
+@values_loop
+def _latitude(points: Array, row: int) -> float:
+    """Latitude of a point, radians."""
+    x, y, z = points[row, 0], points[row, 1], points[row, 2]
+    return arctangent(z, np.sqrt(x * x + y * y))
+
+
+@values_loop
+def _longitude_from(points: Array, row: int, east_x: float, east_y: float) -> float:
+    """Longitude of a point, in [-pi, pi], from the meridian through (east_x, east_y, 0)."""
+    x, y = points[row, 0], points[row, 1]
+    return arctangent(y * east_x - x * east_y, x * east_x + y * east_y)
+
+
+@values_loop
+def _blend(distance: float, transition: float, ratio: float) -> float:
     """ratio^4 where `distance` is not positive, one beyond the transition, the fourth power of a line in between."""
-    share = np.clip(distance / transition, 0.0, 1.0)
-    return ((1.0 - share) * ratio + share) ** 4
+    share = min(max(distance / transition, 0.0), 1.0)
+    width = (1.0 - share) * ratio + share
+    return (width * width) * (width * width)

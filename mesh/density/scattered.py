@@ -15,7 +15,8 @@ from scipy.spatial import cKDTree
 from mesh.arrays import Array, Index
 from mesh.density.named import Density
 from mesh.errors import MeshError, MeshWarning
-from mesh.geometry.sphere import fibonacci_points, mean_spacing, normalize
+from mesh.geometry.cube import patch_centers, patch_of
+from mesh.geometry.sphere import fibonacci_points, mean_spacing
 from mesh.geometry.vectors import triple_product, vector_between, vector_to
 from mesh.triangulation.delaunay import delaunay
 from mesh.triangulation.half_edges import build_twins, first_corners
@@ -81,39 +82,15 @@ def tell_of_part(name: str) -> None:
 
 
 class _Buckets:
-    """A nearby triangle for each patch of the sphere: the faces of a cube, each cut into squares.
+    """A nearby triangle for each patch of the sphere, as `mesh.geometry.cube` numbers them.
 
     `triangle` (6 * resolution^2,) has about as many patches as there are points.
     """
 
     def __init__(self, centers: Array, triangles: Index) -> None:
         resolution = math.ceil(math.sqrt(len(centers) / 6.0))
-        along = (np.arange(resolution) + 0.5) * 2.0 / resolution - 1.0
-        second, first = np.meshgrid(along, along, indexing="ij")
-        patches = np.empty((3, 2, resolution, resolution, 3))
-        for axis in range(3):
-            for side in range(2):
-                patches[axis, side, :, :, axis] = 2.0 * side - 1.0
-                patches[axis, side, :, :, (axis + 1) % 3] = first
-                patches[axis, side, :, :, (axis + 2) % 3] = second
-        nearest = cKDTree(centers).query(normalize(patches.reshape(-1, 3)))[1]
+        nearest = cKDTree(centers).query(patch_centers(resolution))[1]
         self.triangle = first_corners(triangles, len(centers))[0][nearest] // 3
-
-
-@numba.njit(cache=True)
-def _bucket(x: float, y: float, z: float, resolution: int) -> int:
-    """Number of the patch of `_Buckets` that holds a direction."""
-    if abs(x) >= abs(y) and abs(x) >= abs(z):
-        axis, major, first, second = 0, x, y, z
-    elif abs(y) >= abs(z):
-        axis, major, first, second = 1, y, z, x
-    else:
-        axis, major, first, second = 2, z, x, y
-    size = abs(major)
-    column = min(int(0.5 * resolution * (first / size + 1.0)), resolution - 1)
-    row = min(int(0.5 * resolution * (second / size + 1.0)), resolution - 1)
-    face = 2 * axis + (1 if major > 0.0 else 0)
-    return (face * resolution + row) * resolution + column
 
 
 @numba.njit(cache=True)
@@ -165,7 +142,7 @@ def _interpolate(
     """Write the barycentric mean at each point to `result`; `near` is that of `_Buckets`."""
     resolution = int(np.sqrt(len(near) // 6) + 0.5)
     for point in numba.prange(len(points)):
-        start = near[_bucket(points[point, 0], points[point, 1], points[point, 2], resolution)]
+        start = near[patch_of(points[point, 0], points[point, 1], points[point, 2], resolution)]
         triangle = _walk(points, point, centers, triangles, twins, start)
         u, v, w = _determinants(points, point, centers, triangles, triangle)
         u, v, w = max(u, 0.0), max(v, 0.0), max(w, 0.0)

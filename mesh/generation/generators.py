@@ -75,6 +75,25 @@ def _children(triangles: Index, middles: Index) -> Index:
     return children
 
 
+def refine(points: Array, triangles: Index, cells: int) -> tuple[Array, Index]:
+    """Bisect a closed mesh (n points) and divide as many of the new triangles in three as `cells` asks for.
+
+    `cells` lies between 4 n - 6, what bisection gives, and that plus the number of triangles, 2 n - 4. The triangles
+    divided are evenly spread over the numbers. Returns points (cells, 3) and triangles between them.
+    """
+    fine, children, _ = bisect(points, triangles)
+    count = cells - len(fine)
+    if count == 0:
+        return fine, children
+    middle = 4 * np.linspace(0, len(triangles), count, endpoint=False).astype(np.int64) + 3
+    a, b, c = children[middle].T
+    inserted = np.arange(len(fine), cells, dtype=np.int32)
+    children[middle, 2] = inserted
+    others = np.concatenate([np.stack([b, c, inserted], axis=1), np.stack([c, a, inserted], axis=1)])
+    centers = normalize(fine[a] + fine[b] + fine[c])
+    return np.concatenate([fine, centers]), np.concatenate([children, others])
+
+
 def icosahedral_mesh(level: int) -> tuple[Array, Index]:
     """Points (10*4^level + 2, 3) of the icosahedron bisected `level` times and triangles between them.
 

@@ -188,7 +188,7 @@ class Optimizer:
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
         self._least_energy, self._patience = np.inf, PATIENCE
         if self._weighted:
-            self._evaluate = WeightedCells(density or uniform, len(points), fixed).evaluate
+            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often=True).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
 

@@ -17,6 +17,7 @@ from mesh.generation.generators import (
     bisect,
     icosahedral_level,
     icosahedral_mesh,
+    refine,
     starting_points,
 )
 from mesh.generation.optimizer import Callback, Limits, Optimizer, ScvtResult
@@ -41,6 +42,9 @@ COARSEST_LEVEL = 3
 
 COARSE_TOLERANCE = 1e-3
 """Residual at which the multilevel method moves to the next finer mesh; a smaller one saves no time."""
+
+MOST_COARSEST_CELLS = 400
+"""A mesh under a density starts with one of no more cells than this, which converges in no time from any start."""
 
 ADVICE = {
     "iterations": "allow more iterations",
@@ -138,13 +142,15 @@ def converge(request: MeshRequest, density: Density, limits: Limits, callback: C
     """
     begin = time.perf_counter()
     cells, method = cells_of(request), request.method
+    triangles: Index | None
     if method not in METHODS:
         raise MeshError(f"there is no optimisation method named '{method}'; choose one of {', '.join(METHODS)}")
-    points, triangles = (
-        _multilevel_start(cells, request.start, density, limits, begin)
-        if method == "multilevel"
-        else starting_mesh(cells, request.start, density, request.seed)
-    )
+    if method == "multilevel":
+        points, triangles = _multilevel_start(cells, request.start, density, limits, begin)
+    elif method == "lbfgs" and request.start is None and density is not uniform:
+        points, triangles = _refined_start(cells, density, limits, begin)
+    else:
+        points, triangles = starting_mesh(cells, request.start, density, request.seed)
     result = optimize(points, triangles, method, density, limits.since(begin), callback, request.seed)
     check_converged(result, limits)
     return result
@@ -197,8 +203,32 @@ def _multilevel_start(
         )
     points, triangles = renumber(*icosahedral_mesh(min(COARSEST_LEVEL, level)))
     for _ in range(COARSEST_LEVEL, level):
-        loose = replace(limits.since(begin), tolerance=max(COARSE_TOLERANCE, limits.tolerance))
-        coarse = optimize(points, triangles, "multilevel", density, loose)
+        coarse = optimize(points, triangles, "multilevel", density, _loose(limits, begin))
         refined, children, _ = bisect(coarse.points, coarse.triangles)
         points, triangles = renumber(refined, children)
     return points, triangles
+
+
+def _refined_start(cells: int, density: Density, limits: Limits, begin: float) -> tuple[Array, Index | None]:
+    """Points refined from a converged mesh of a quarter as many cells, and so on down, and triangles if known.
+
+    They are spread as the density asks, which takes a mesh of its full size hundreds of iterations. A coarse mesh
+    whose generators the density draws to one hemisphere is left out.
+    """
+    counts = [cells]
+    while counts[0] > MOST_COARSEST_CELLS:
+        counts.insert(0, (counts[0] + 6) // 4)
+    points, triangles = starting_mesh(counts[0])
+    for finer in counts[1:]:
+        try:
+            coarse = Optimizer(points, triangles, density=density).run(_loose(limits, begin))
+        except HemisphereError:
+            points, triangles = starting_mesh(finer)
+        else:
+            points, triangles = renumber(*refine(coarse.points, coarse.triangles, finer))
+    return points, triangles
+
+
+def _loose(limits: Limits, begin: float) -> Limits:
+    """Limits for a coarse mesh, with the rest of the seconds since `begin`."""
+    return replace(limits.since(begin), tolerance=max(COARSE_TOLERANCE, limits.tolerance))

@@ -13,7 +13,8 @@ Where a triangle lies outside of the cell, a corner being beyond another side, i
 Tangential parts and |y - x|^2 come from q = s u + t v, which is small, so that nothing cancels.
 
 The quadrature points of a chunk of cells are written by one kernel, the density, any callable, is applied to them, and
-a second kernel sums.
+a second kernel sums. Cells on a plateau of the density (`mesh.density.plateaus`) have the exact integrals of
+`mesh.integrals.moments` instead, times its value; since |y - x|^2 = 2 - 2 x.y, their mass is x.M + E / 2.
 """
 
 import numba
@@ -22,11 +23,13 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.density.named import Density, density_at
+from mesh.density.plateaus import Plateaus, plateaus_of
 from mesh.density.scaling import within_range
 from mesh.errors import MeshError
+from mesh.geometry.cube import patch_of
 from mesh.geometry.sphere import to_lonlat
-from mesh.geometry.vectors import triple_product, vector_between, vector_to
-from mesh.integrals.moments import BLOCK
+from mesh.geometry.vectors import dot_product, triple_product, vector_between, vector_to
+from mesh.integrals.moments import BLOCK, cell_moment
 
 CHUNK = 16384
 """Cells whose quadrature points are held at a time."""
@@ -49,14 +52,56 @@ RULE = np.array(
 
 
 @numba.njit(parallel=True, cache=True)
-def _quadrature_points(
-    points: Array, circumcenters: Array, ring_starts: Index, rings: Index, first: int, last: int, nodes: Array
+def _integrate_on_plateaus(
+    points: Array,
+    circumcenters: Array,
+    ring_starts: Index,
+    rings: Index,
+    resolution: int,
+    values: Array,
+    reaches: Array,
+    sums: Array,
+    nodes: Index,
 ) -> None:
-    """Write the quadrature points of the cells first to last - 1 to `nodes`, ring after ring."""
-    for cell in numba.prange(first, last):
+    """Write the integrals of cells on `Plateaus` to `sums`, as `_sum_cells` does, and to `nodes` what the others need.
+
+    That is a number of quadrature points (n,), zero for cells on a plateau.
+    """
+    for cell in numba.prange(len(points)):
+        x, y, z = vector_to(points, cell)
+        patch = patch_of(x, y, z, resolution)
+        reach = reaches[patch]
+        square = reach * reach if reach > 0.0 else 0.0
+        start, stop = ring_starts[cell], ring_starts[cell + 1]
+        inside = True
+        for slot in range(start, stop):
+            corner = vector_between(points, cell, circumcenters, rings[slot])
+            inside = inside and dot_product(corner, corner) < square
+        nodes[cell] = 0 if inside else len(RULE) * (stop - start)
+        if inside:
+            mx, my, mz, energy = cell_moment(points, circumcenters, ring_starts, rings, cell)
+            radial, value = x * mx + y * my + z * mz, values[patch]
+            sums[cell, 0] = value * (radial + 0.5 * energy)
+            sums[cell, 1], sums[cell, 2] = value * (mx - radial * x), value * (my - radial * y)
+            sums[cell, 3], sums[cell, 4] = value * (mz - radial * z), value * radial
+            sums[cell, 5] = value * energy
+
+
+@numba.njit(parallel=True, cache=True)
+def _quadrature_points(
+    points: Array,
+    circumcenters: Array,
+    ring_starts: Index,
+    rings: Index,
+    cells: Index,
+    rows: Index,
+    nodes: Array,
+) -> None:
+    """Write the quadrature points of the `cells` (k,) to `nodes`, ring after ring, from the row `rows` (k,) on."""
+    for index in numba.prange(len(cells)):
+        cell, row = cells[index], rows[index]
         start, stop = ring_starts[cell], ring_starts[cell + 1]
         u = vector_between(points, cell, circumcenters, rings[stop - 1])
-        row = len(RULE) * (start - ring_starts[first])
         for slot in range(start, stop):
             v = vector_between(points, cell, circumcenters, rings[slot])
             for node in range(len(RULE)):
@@ -76,20 +121,20 @@ def _sum_cells(
     circumcenters: Array,
     ring_starts: Index,
     rings: Index,
-    first: int,
-    last: int,
+    cells: Index,
+    rows: Index,
     values: Array,
     sums: Array,
 ) -> None:
-    """Write the integrals of the cells first to last - 1, from values of the density at the nodes, to rows of `sums`.
+    """Write the integrals of the `cells` (k,), from values of the density at the nodes, to rows of `sums`.
 
     Columns: mass; tangential part of the moment (three); x.M; energy.
     """
-    for cell in numba.prange(first, last):
+    for index in numba.prange(len(cells)):
+        cell, row = cells[index], rows[index]
         start, stop = ring_starts[cell], ring_starts[cell + 1]
         px, py, pz = points[cell, 0], points[cell, 1], points[cell, 2]
         u = vector_between(points, cell, circumcenters, rings[stop - 1])
-        row = len(RULE) * (start - ring_starts[first])
         mass, radial, energy = 0.0, 0.0, 0.0
         mx, my, mz = 0.0, 0.0, 0.0
         for slot in range(start, stop):
@@ -150,13 +195,18 @@ def _gradient_and_partials(
 class WeightedCells:
     """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move.
 
-    Where the density is extremely large or small, the integrals are those of a multiple of it.
+    Where the density is extremely large or small, the integrals are those of a multiple of it. With `often`, for
+    callers who integrate many times, plateaus of the density are sought first, where its values are then known.
     """
 
-    def __init__(self, density: Density, n_cells: int, fixed: NDArray[np.bool_] | None = None) -> None:
+    def __init__(
+        self, density: Density, n_cells: int, fixed: NDArray[np.bool_] | None = None, often: bool = False
+    ) -> None:
         self._density = within_range(density)
+        self._plateaus = plateaus_of(self._density, n_cells) if often else None
         self._sums = np.empty((n_cells, 6))
         self._fixed = np.zeros(n_cells, bool) if fixed is None else fixed
+        self._counts = np.empty(n_cells, np.int32)
         self._nodes = np.empty((0, 3))
 
     def integrate(self, points: Array, circumcenters: Array, ring_starts: Index, rings: Index) -> Array:
@@ -164,14 +214,21 @@ class WeightedCells:
 
         Raises `MeshError` where the density is negative, not finite or zero on a whole cell.
         """
-        for first in range(0, len(points), CHUNK):
-            last = min(first + CHUNK, len(points))
-            count = len(RULE) * int(ring_starts[last] - ring_starts[first])
-            if len(self._nodes) < count:
-                self._nodes = np.empty((count, 3))
-            cells, nodes = (points, circumcenters, ring_starts, rings, first, last), self._nodes[:count]
-            _quadrature_points(*cells, nodes)
-            _sum_cells(*cells, density_at(self._density, nodes), self._sums)
+        mesh = (points, circumcenters, ring_starts, rings)
+        if self._plateaus is None:
+            np.multiply(np.diff(ring_starts), len(RULE), out=self._counts)
+        else:
+            known: Plateaus = self._plateaus
+            _integrate_on_plateaus(*mesh, known.resolution, known.values, known.reaches, self._sums, self._counts)
+        varied = np.flatnonzero(self._counts)
+        for first in range(0, len(varied), CHUNK):
+            cells = varied[first : first + CHUNK]
+            ends = np.cumsum(self._counts[cells])
+            if len(self._nodes) < ends[-1]:
+                self._nodes = np.empty((ends[-1], 3))
+            rows, nodes = ends - self._counts[cells], self._nodes[: ends[-1]]
+            _quadrature_points(*mesh, cells, rows, nodes)
+            _sum_cells(*mesh, cells, rows, density_at(self._density, nodes), self._sums)
         empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
         if len(empty):
             longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[empty[:1]]))
