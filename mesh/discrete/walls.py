@@ -10,13 +10,30 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 
-from mesh.arrays import Index
+from mesh.arrays import Array, Index, Signs
 from mesh.voronoi_mesh import VoronoiMesh
 
 
 def wall_edges(mesh: VoronoiMesh) -> Index:
     """Edges at which a cell is missing."""
     return np.flatnonzero((mesh.cells_on_edge < 0).any(axis=1))
+
+
+def shares_of_circulation(mesh: VoronoiMesh, wall_slip: float) -> Array:
+    """The share (n_vertices,) of the circulation round each vertex that is vorticity of the fluid.
+
+    All of it inside; 1 - `wall_slip` where a cell is missing, from 1 (no slip) to 0 (free slip). See `docs/scheme.md`.
+    """
+    return np.where((mesh.cells_on_vertex < 0).any(axis=1), 1.0 - wall_slip, 1.0)
+
+
+def circulation_signs(mesh: VoronoiMesh, wall_slip: float) -> Signs | Array:
+    """Factors (n_vertices, 3) of d u in the circulations that are vorticity: signs times `shares_of_circulation`.
+
+    Without slip they are `edge_signs_on_vertex` themselves.
+    """
+    signs = mesh.edge_signs_on_vertex
+    return signs if wall_slip == 0.0 else signs * shares_of_circulation(mesh, wall_slip)[:, None]
 
 
 def closed_mesh(mesh: VoronoiMesh) -> VoronoiMesh:
