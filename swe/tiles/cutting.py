@@ -210,6 +210,8 @@ class _Cutter:
         self.ratio = mesh.dv_edge / mesh.dc_edge
         self.on_cell, self.on_vertex = signs
         self.shares = shares
+        inner = mesh.cells_on_edge[:, 0] != mesh.cells_on_edge[:, 1]
+        self.turns = inner[mesh.edges_on_vertex] & (signs[1] != 0)  # along walls nothing turns
         self.sides, self.changed_vorticity = sides, changed_vorticity
         self.prefix = _area_passed(mesh)
         self.local_cells = LocalNumbers(mesh.n_cells)
@@ -254,7 +256,7 @@ class _Cutter:
         if missing.any():
             round_edges[missing] = len(lengths)
             halo_edges, lengths = np.append(halo_edges, 0), np.append(lengths, 0.0)
-        shares = np.where(missing, 1.0, self.shares[round_vertices][:, None])
+        shares = np.where(self.turns[round_vertices], self.shares[round_vertices][:, None], 1.0)
         again = mesh.edges_on_vertex[round_vertices][shares < 1.0]
         round_edges[shares < 1.0] = len(lengths) + np.arange(len(again))
         halo_edges = np.append(halo_edges, again)

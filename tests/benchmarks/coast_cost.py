@@ -14,9 +14,9 @@ from mesh import VoronoiMesh, scvt_mesh
 from swe import Simulation
 from tests.cut_mesh import random_sea
 
-TURNS = 15
+TURNS = 41
 
-SECONDS_PER_TURN = 0.2
+SECONDS_PER_TURN = 0.1
 
 
 class Turns:
