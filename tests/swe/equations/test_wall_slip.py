@@ -166,3 +166,15 @@ def test_a_sphere_does_not_know_slip(icosahedral_mesh: VoronoiMesh) -> None:
     for run in runs:
         run.run(days=0.1, progress=False)
     np.testing.assert_array_equal(runs[0].state.normal_velocity, runs[1].state.normal_velocity)
+
+
+@pytest.mark.parametrize("wall_slip", [0.0, 1.0])
+def test_the_bound_of_the_time_step_holds_at_coasts(sea: VoronoiMesh, wall_slip: float) -> None:
+    """It is as close as on a sphere; walls, where nothing moves, do not shorten it."""
+    damping = BiharmonicDissipation(sea.scaled(RADIUS), 1e15, wall_slip)
+    vector = np.random.default_rng(0).normal(size=sea.n_edges)
+    vector[wall_edges(sea)] = 0.0
+    for _ in range(300):
+        vector = damping.acceleration(vector / np.linalg.norm(vector)).copy()
+    limit = 2.0 / np.linalg.norm(vector)
+    assert 0.4 * limit < damping.largest_time_step <= limit
