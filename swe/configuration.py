@@ -37,6 +37,7 @@ class Configuration:
     dissipation: float
     scheme: SchemeName
     upwinding: float
+    wall_slip: float
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,7 @@ class Options:
     dissipation: float = 0.0
     scheme: SchemeName = "ringler2010"
     upwinding: float = 0.0
+    wall_slip: float = 0.0
 
     def __post_init__(self) -> None:
         for name, value in vars(self).items():
@@ -68,7 +70,7 @@ class Options:
                 object.__setattr__(self, name, str(value))
                 continue
             number = plain_number(f"the {words}", value, InputError)
-            if name == "upwinding":
+            if name in ("upwinding", "wall_slip"):
                 if not 0.0 <= number <= 1.0:
                     raise InputError(f"the {words} is {number:g}; it must be a number from 0 to 1")
             elif name in ("anticipation", "dissipation"):
@@ -112,6 +114,7 @@ class Options:
             self.dissipation,
             self.scheme,
             self.upwinding,
+            self.wall_slip,
         )
 
 

@@ -13,7 +13,7 @@ from scipy.sparse import coo_array, csr_array
 
 from mesh.arrays import Array, Index
 from mesh.discrete.sides import Sides, sides_of_cells
-from mesh.discrete.walls import closed_mesh
+from mesh.discrete.walls import closed_mesh, shares_of_circulation
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -21,12 +21,13 @@ class Operators:
     """All operators of one mesh, each made when it is first asked for; apply them with `@`.
 
     They follow Ringler et al. (2010), by the numbers of their equations; across walls nothing flows and there is no
-    gradient (`mesh.discrete.walls`).
+    gradient (`mesh.discrete.walls`). The vorticity at coasts is that of walls with `wall_slip`, from 0 to 1.
     """
 
-    def __init__(self, mesh: VoronoiMesh) -> None:
+    def __init__(self, mesh: VoronoiMesh, wall_slip: float = 0.0) -> None:
         self.mesh = closed_mesh(mesh)
         self._given = mesh
+        self._wall_slip = wall_slip
 
     @cached_property
     def divergence(self) -> csr_array:
@@ -51,7 +52,8 @@ class Operators:
         mesh = self.mesh
         tail, head = mesh.vertices_on_edge.T
         return _scale_rows(
-            1.0 / mesh.area_triangle, _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, mesh.n_vertices)
+            shares_of_circulation(self._given, self._wall_slip) / mesh.area_triangle,
+            _two_per_edge(head, tail, mesh.dc_edge, -mesh.dc_edge, mesh.n_vertices),
         )
 
     @cached_property
@@ -114,9 +116,9 @@ class Operators:
         return csr_array(coo_array((np.full(2 * mesh.n_edges, 0.5), places), shape=(mesh.n_edges, mesh.n_vertices)))
 
 
-def build_operators(mesh: VoronoiMesh) -> Operators:
-    """The operators of `mesh`, in the units of its radius."""
-    return Operators(mesh)
+def build_operators(mesh: VoronoiMesh, wall_slip: float = 0.0) -> Operators:
+    """The operators of `mesh`, in the units of its radius, with a factor for the slip along walls (`Operators`)."""
+    return Operators(mesh, wall_slip)
 
 
 def _two_per_edge(rows_a: Array, rows_b: Array, values_a: Array, values_b: Array, n_rows: int) -> coo_array:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from mesh.arrays import Index
+from mesh.arrays import Array, Index, Signs
 from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 
@@ -46,6 +46,23 @@ def _components(size: int, pairs: Index) -> tuple[int, Index]:
     graph = coo_matrix((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
     count, component = connected_components(graph, directed=False)
     return int(count), component
+
+
+def shares_of_circulation(mesh: VoronoiMesh, wall_slip: float) -> Array:
+    """The share (n_vertices,) of the circulation round each vertex that is vorticity of the fluid.
+
+    All of it inside; 1 - `wall_slip` where a cell is missing, from 1 (no slip) to 0 (free slip). See `docs/scheme.md`.
+    """
+    return np.where(boundary_vertices(mesh), 1.0 - wall_slip, 1.0)
+
+
+def circulation_signs(mesh: VoronoiMesh, wall_slip: float) -> Signs | Array:
+    """Factors (n_vertices, 3) of d u in the circulations that are vorticity: signs times `shares_of_circulation`.
+
+    Without slip they are `edge_signs_on_vertex` themselves.
+    """
+    signs = mesh.edge_signs_on_vertex
+    return signs if wall_slip == 0.0 else signs * shares_of_circulation(mesh, wall_slip)[:, None]
 
 
 def closed_mesh(mesh: VoronoiMesh) -> VoronoiMesh:

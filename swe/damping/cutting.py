@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.discrete.walls import closed_mesh, shares_of_circulation, wall_edges
 from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
@@ -42,13 +42,16 @@ class DissipationTiles:
         return len(self.arrays[1])
 
 
-def cut_for_dissipation(mesh: VoronoiMesh, cells_per_tile: int = CELLS_PER_TILE) -> DissipationTiles:
+def cut_for_dissipation(
+    mesh: VoronoiMesh, cells_per_tile: int = CELLS_PER_TILE, *, wall_slip: float = 0.0
+) -> DissipationTiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
-    Raises `InputError` if not even the surroundings of a single cell fit.
+    The vorticity at coasts is that of walls with `wall_slip`. Raises `InputError` if not even the surroundings of a
+    single cell fit.
     """
     first_cell = tile_bounds(0, mesh.n_cells, cells_per_tile)
-    cutter = _Cutter(mesh)
+    cutter = _Cutter(mesh, wall_slip)
     rank = inverse_order(order_of_cells(cutter.mesh, first_cell))
     lower = rank[cutter.mesh.cells_on_edge].min(axis=1)
     edges = np.argsort(lower, kind="stable")
@@ -58,7 +61,7 @@ def cut_for_dissipation(mesh: VoronoiMesh, cells_per_tile: int = CELLS_PER_TILE)
     if most >= MIRROR:
         if cells_per_tile == 1:
             raise InputError(f"dissipation at a cell needs the {most} edges around it; the limit is {MIRROR - 1}")
-        return cut_for_dissipation(mesh, cells_per_tile // 2)
+        return cut_for_dissipation(mesh, cells_per_tile // 2, wall_slip=wall_slip)
     return DissipationTiles(
         arrays=(
             *packed([[piece.own] for piece in pieces], np.uint32),
@@ -84,7 +87,8 @@ class _Piece:
 class _Cutter:
     """Cuts tiles out of a mesh, one after another."""
 
-    def __init__(self, mesh: VoronoiMesh) -> None:
+    def __init__(self, mesh: VoronoiMesh, wall_slip: float) -> None:
+        self.shares = shares_of_circulation(mesh, wall_slip)
         self.on_cell, self.on_vertex = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
         self.mesh = closed_mesh(mesh)
         self.vertices_on_edge = self.mesh.vertices_on_edge.copy()
@@ -132,7 +136,7 @@ class _Cutter:
                 mesh.dc_edge[known],
                 mesh.dv_edge[known],
                 in_whole_blocks(1.0 / mesh.area_cell[around]),
-                1.0 / mesh.area_triangle[corners],
+                self.shares[corners] / mesh.area_triangle[corners],
             ],
         )
         for numbers in (cells, edges, vertices):

@@ -25,7 +25,7 @@ class DissipationOverTiles(Term):
     def __init__(self, mesh: VoronoiMesh, dissipation: BiharmonicDissipation) -> None:
         self.name, self.meaning, self.changes = dissipation.name, dissipation.meaning, dissipation.changes
         self.coefficient = dissipation.coefficient
-        self._tiles = tiles = cut_for_dissipation(mesh)
+        self._tiles = tiles = cut_for_dissipation(mesh, wall_slip=dissipation.wall_slip)
         self._put_aside = np.empty(len(tiles.arrays[2]))
         self._n_edges = mesh.n_edges
         threads = numba.config.NUMBA_NUM_THREADS  # type: ignore[attr-defined]

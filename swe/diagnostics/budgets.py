@@ -97,7 +97,8 @@ def measure_rates(
         rates["absolute_vorticity_rate_gradient"] = gradient.absolute_vorticity
         rates["total_energy_rate_coriolis"] = coriolis.total_energy
         rates["absolute_vorticity_rate_coriolis"] = coriolis.absolute_vorticity
-        rates["potential_enstrophy_rate_coriolis"] = coriolis.potential_enstrophy + transport.potential_enstrophy
+        advection = coriolis.potential_enstrophy + transport.potential_enstrophy
+        rates["potential_enstrophy_rate_coriolis"] = advection + _enstrophy_from_coasts(model, bernoulli, q)
     for term in model.terms:
         own = model.tendency_of(term, state, time)
         any_source, any_force = (
@@ -165,7 +166,7 @@ def _work(model: ShallowWaterModel, flux: Array, potential_vorticity: Array, acc
             flux,
             potential_vorticity,
             mesh.edges_on_vertex,
-            measures.edge_signs_on_vertex,
+            measures.circulation_signs,
             mesh.dc_edge,
             measures.dv_edge,
             coarse,
@@ -212,7 +213,7 @@ def _work_of_forces(
             q,
             mesh.cells_on_edge,
             mesh.edges_on_vertex,
-            measures.edge_signs_on_vertex,
+            measures.circulation_signs,
             mesh.dc_edge,
             measures.dv_edge,
             coarse,
@@ -222,3 +223,15 @@ def _work_of_forces(
 
     energy, vorticity, *others = folded_sums(work, 5, model.entities, model.processes)
     return _Work(0.0, energy, vorticity, 0.0), _Work(0.0, *others)
+
+
+def _enstrophy_from_coasts(model: ShallowWaterModel, bernoulli: Array, q: Array) -> float:
+    """What minus the gradient of the Bernoulli function does to potential enstrophy, where its paths end at walls."""
+    mesh, coast = model.closed, np.flatnonzero((model.mesh.cells_on_vertex < 0).any(axis=1))
+    if not anywhere(model.processes, len(coast)):
+        return 0.0
+    first, second = np.moveaxis(mesh.cells_on_edge[mesh.edges_on_vertex[coast]], -1, 0)
+    circulation = model.measures.circulation_signs[coast] * (bernoulli[first] - bernoulli[second])
+    at_vertices = np.zeros((1, mesh.n_vertices))
+    at_vertices[0, coast] = q[coast] * circulation.sum(axis=1)
+    return float(model.processes.exact_sums(at_vertices)[0])

@@ -36,7 +36,7 @@ def work_of(
     F: Array,
     q: Array,
     edges_on_vertex: Index,
-    sign: Signs,
+    sign: Signs | Array,
     dc_edge: Array,
     dv_edge: Array,
     coarse: Array,
@@ -111,7 +111,7 @@ def work_of_forces(
     q: Array,
     cells_on_edge: Index,
     edges_on_vertex: Index,
-    sign: Signs,
+    sign: Signs | Array,
     dc_edge: Array,
     dv_edge: Array,
     coarse: Array,
@@ -121,7 +121,8 @@ def work_of_forces(
     """Parts (blocks, 5, 3) of what minus the gradient of B does, and then the rest of du; see `work_of`.
 
     For the gradient they concern total energy and absolute vorticity, for the rest potential enstrophy as well. The
-    gradient's share of potential enstrophy is the sum of q_v over closed paths of differences, zero term by term.
+    gradient's share of potential enstrophy is the sum of q_v over closed paths of differences, zero term by term where
+    no cell is missing.
     """
     blocks = sums.shape[0]
     for k in numba.prange(blocks):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.discrete.walls import circulation_signs, closed_mesh, wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
 from swe.equations.terms import Term
@@ -15,7 +15,8 @@ class BiharmonicDissipation(Term):
 
     On the mesh lap is symmetric in the inner product sum_e l_e d_e u_e v_e, so the acceleration -nu lap(lap u)
     removes energy, nu sum_e l_e d_e (lap u)_e^2 per unit thickness. Mass and absolute vorticity are conserved. Like its
-    parts, curl and gradient, lap is consistent in the mean over neighbours, not at every edge.
+    parts, curl and gradient, lap is consistent in the mean over neighbours, not at every edge. At walls its curl has
+    their `wall_slip`, as that of the model: with free slip no stress acts there.
     """
 
     name = "dissipation"
@@ -24,8 +25,9 @@ class BiharmonicDissipation(Term):
     rings = 3  # the second Laplacian takes divergences of cells beyond the neighbours
     after_steps = True
 
-    def __init__(self, mesh: VoronoiMesh, coefficient: float) -> None:
-        self.coefficient = coefficient
+    def __init__(self, mesh: VoronoiMesh, coefficient: float, wall_slip: float = 0.0) -> None:
+        self.coefficient, self.wall_slip = coefficient, wall_slip
+        self._circulation_signs = circulation_signs(mesh, wall_slip)
         self._mesh, self._closed, self._walls = mesh, closed_mesh(mesh), wall_edges(mesh)
         self._divergence = np.empty(mesh.n_cells)
         self._vorticity = np.empty(mesh.n_vertices)
@@ -52,12 +54,15 @@ class BiharmonicDissipation(Term):
         """Longest stable time step, s: 2 / (nu L^2), where L bounds the eigenvalues of lap.
 
         By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, and that of
-        curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes.
+        curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes. Walls, where
+        nothing moves, have no part in it.
         """
         mesh = self._closed
         flow, circulation = mesh.dv_edge / mesh.dc_edge, mesh.dc_edge / mesh.dv_edge
+        flow[self._walls] = circulation[self._walls] = 0.0
         at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
-        at_vertices = circulation[mesh.edges_on_vertex].sum(axis=1) / mesh.area_triangle
+        shares = np.abs(self._circulation_signs)
+        at_vertices = (shares * circulation[mesh.edges_on_vertex]).sum(axis=1) / mesh.area_triangle
         bound = 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
         rate = self.coefficient * bound**2
         return 2.0 / rate if rate > 0.0 else float("inf")
@@ -77,7 +82,7 @@ class BiharmonicDissipation(Term):
         kernels.relative_vorticity(
             velocity,
             mesh.edges_on_vertex,
-            self._mesh.edge_signs_on_vertex,
+            self._circulation_signs,
             mesh.dc_edge,
             mesh.area_triangle,
             self._vorticity,

@@ -27,7 +27,7 @@ def thickness_flux(h: Array, u: Array, cells_on_edge: Index, F: Array) -> None:
 
 @compiled
 def relative_vorticity(
-    u: Array, edges_on_vertex: Index, sign: Signs, dc_edge: Array, area_triangle: Array, zeta: Array
+    u: Array, edges_on_vertex: Index, sign: Signs | Array, dc_edge: Array, area_triangle: Array, zeta: Array
 ) -> None:
     """zeta_v = 1/A_v sum_e t_ev u_e d_e at vertices."""
     for v in numba.prange(zeta.size):

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,14 +11,15 @@ from mesh.arrays import Array, Signs
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.parallel.processes import Own, Selection
 
-Number = TypeVar("Number", bound=np.generic)
+Values = TypeVar("Values", bound=NDArray[Any])
 
 
 @dataclass(frozen=True, eq=False)
 class Measures:
     """The factors of every term of an integral, zero at entities that other processes count.
 
-    Each is the array of the mesh itself where none does. `edge_signs_on_vertex` are factors in circulations.
+    Each is the array of the mesh itself where none does. `circulation_signs` are the factors in circulations that are
+    vorticity (`mesh.discrete.walls`).
     """
 
     area_cell: Array
@@ -26,7 +27,7 @@ class Measures:
     kite_areas_on_vertex: Array
     dv_edge: Array
     dc_edge: Array
-    edge_signs_on_vertex: Signs
+    circulation_signs: Signs | Array
 
     @cached_property
     def half_edge_area(self) -> Array:
@@ -34,8 +35,8 @@ class Measures:
         return 0.5 * self.dv_edge * self.dc_edge
 
 
-def measures_of(mesh: VoronoiMesh, closed: VoronoiMesh, own: Own) -> Measures:
-    """Those of a `mesh`, `closed` for loops, whose entities `own` are counted here.
+def measures_of(closed: VoronoiMesh, circulation_signs: Signs | Array, own: Own) -> Measures:
+    """Those of a mesh `closed` for loops, with its `circulation_signs`, whose entities `own` are counted here.
 
     `dc_edge` is that of the mesh everywhere, as circulations at own vertices go along edges of others.
     """
@@ -45,11 +46,11 @@ def measures_of(mesh: VoronoiMesh, closed: VoronoiMesh, own: Own) -> Measures:
         _only(own.vertices, closed.kite_areas_on_vertex),
         _only(own.edges, closed.dv_edge),
         closed.dc_edge,
-        _only(own.vertices, mesh.edge_signs_on_vertex),
+        _only(own.vertices, circulation_signs),
     )
 
 
-def _only(own: Selection, values: NDArray[Number]) -> NDArray[Number]:
+def _only(own: Selection, values: Values) -> Values:
     """`values` at `own` entities, and zero at others."""
     if isinstance(own, slice):
         return values

@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from mesh.arrays import Array, Index
-from mesh.discrete.walls import closed_mesh, wall_edges
+from mesh.discrete.walls import circulation_signs, closed_mesh, wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
 from swe.equations.measures import measures_of
@@ -59,6 +59,8 @@ class ShallowWaterModel:
         Terms added to the bracket, such as `Anticipation`, `BiharmonicDissipation` or a user's own `Forcing`.
     processes
         The processes that share the mesh.
+    wall_slip
+        Slip along walls, from 0 (no slip) to 1 (free slip, no relative vorticity at coasts); see `docs/scheme.md`.
 
     Attributes
     ----------
@@ -89,6 +91,7 @@ class ShallowWaterModel:
         scheme: type[Scheme] = Ringler2010,
         terms: Sequence[Term] = (),
         processes: Processes = ONE_PROCESS,
+        wall_slip: float = 0.0,
     ) -> None:
         check_field("topography", topography, mesh.n_cells)
         check_field("coriolis", coriolis, mesh.n_vertices)
@@ -106,8 +109,10 @@ class ShallowWaterModel:
         self.scheme = scheme(mesh)
         self.terms = tuple(terms)
         self.processes = processes
+        self.wall_slip = wall_slip
         self.closed = closed_mesh(mesh)
-        self.measures = measures_of(mesh, self.closed, processes.own)
+        self._circulation_signs = circulation_signs(mesh, wall_slip)
+        self.measures = measures_of(self.closed, self._circulation_signs, processes.own)
         areas, counted = self.measures.area_cell, np.zeros(mesh.n_cells)
         counted[processes.own.cells] = 1.0
         self.area, self.bottom_volume, cells = processes.exact_sums(np.stack([areas, areas * topography, counted]))
@@ -254,7 +259,7 @@ class ShallowWaterModel:
         kernels.relative_vorticity(
             state.normal_velocity,
             mesh.edges_on_vertex,
-            self.mesh.edge_signs_on_vertex,
+            self._circulation_signs,
             mesh.dc_edge,
             mesh.area_triangle,
             self._vorticity,

@@ -22,7 +22,7 @@ from swe.stepping.time_stepping import Tendency
 ABSENT: dict[str, object] = {"fields": list(FIELDS), "forcings": []}
 """What holds for runs of earlier versions, whose records do not say."""
 
-ABSENT_CONFIGURATION = {"scheme": "ringler2010", "upwinding": 0.0}
+ABSENT_CONFIGURATION = {"scheme": "ringler2010", "upwinding": 0.0, "wall_slip": 0.0}
 """The same for their configuration."""
 
 

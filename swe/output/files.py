@@ -89,14 +89,21 @@ def _create_diagnostics(
 
 
 def _attributes(model: ShallowWaterModel, description: Mapping[str, Any]) -> dict[str, object]:
-    """Global attributes that identify the run of a file; nothing that differs between identical runs."""
+    """Global attributes that identify the run of a file; nothing that differs between identical runs.
+
+    The slip along walls is told where there is some, so that files of runs without coasts stay as they were.
+    """
+    configuration = description["configuration"]
+    told = {name: value for name, value in configuration.items() if name != "scheme"}
+    if told["wall_slip"] == 0.0:
+        del told["wall_slip"]
     return {
         "title": f"{description['case']}, a run of the shallow-water model of trisk",
         "case": description["case"],
         "parameters": json.dumps(description["parameters"]),
         "mesh_hash": description["mesh_hash"],
         "scheme": f"{model.scheme.name}: {model.scheme.source}",
-        **{name: value for name, value in description["configuration"].items() if name != "scheme"},
+        **told,
         "trisk_version": package_versions()["trisk"],
     }
 

@@ -110,7 +110,7 @@ def build_model(
     if configuration.upwinding > 0.0:
         terms.append(Upwinding(closed_mesh(start.mesh), configuration.upwinding))
     if configuration.dissipation > 0.0:
-        terms.append(BiharmonicDissipation(start.mesh, configuration.dissipation))
+        terms.append(BiharmonicDissipation(start.mesh, configuration.dissipation, configuration.wall_slip))
     terms += start.forcings
     case = start.case
     return ShallowWaterModel(
@@ -122,6 +122,7 @@ def build_model(
         SCHEMES[configuration.scheme],
         terms,
         processes,
+        configuration.wall_slip,
     )
 
 

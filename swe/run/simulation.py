@@ -93,6 +93,9 @@ class Simulation:
     upwinding
         How far potential vorticity is blended towards the value upstream, from 0 to 1, so that potential enstrophy
         decays at no cost in energy and whatever the time step (`swe.equations.upwinding`).
+    wall_slip
+        Slip along coasts, from 0 (no slip) to 1 (free slip): how much of the circulation at coasts is not vorticity of
+        the fluid (`docs/scheme.md`). Meshes without a coast do not know it.
     fields
         Names of the fields in snapshots, from `swe.diagnostics.outputs.FIELDS`; all of them by default.
     overwrite
@@ -135,22 +138,15 @@ class Simulation:
         dissipation: float = 0.0,
         scheme: SchemeName = "ringler2010",
         upwinding: float = 0.0,
+        wall_slip: float = 0.0,
         fields: Iterable[str] | None = None,
         overwrite: bool = False,
         resume: bool = False,
         processes: Processes = ONE_PROCESS,
     ) -> None:
         options = Options(
-            time_step,
-            snapshot_interval,
-            diagnostics_interval,
-            checkpoint_interval,
-            sampling,
-            integrator,
-            anticipation,
-            dissipation,
-            scheme,
-            upwinding,
+            *(time_step, snapshot_interval, diagnostics_interval, checkpoint_interval, sampling, integrator),
+            *(anticipation, dissipation, scheme, upwinding, wall_slip),
         )
         options.require_suitable(case.name, case.prescribed_wind)
         output_fields = chosen_fields(fields)

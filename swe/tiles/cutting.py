@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
 from mesh.discrete.sides import Sides
-from mesh.discrete.walls import closed_mesh
+from mesh.discrete.walls import closed_mesh, shares_of_circulation
 from mesh.triangulation.ordering import inverse_order
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
@@ -105,6 +105,7 @@ def build_tiles(
     with_border: bool = False,
     changed_vorticity: bool = False,
     own: Own = EVERYTHING,
+    wall_slip: float = 0.0,
 ) -> Tiles:
     """Cut `mesh` (in metres) into tiles of about `cells_per_tile` cells, or fewer if scratch cannot hold them.
 
@@ -115,7 +116,8 @@ def build_tiles(
     those of a scheme whose flux through a side has a part from each of its cells: they hold the rings of all cells
     around those computed, and the vectors of their sides. With `changed_vorticity` they hold what
     `swe.tiles.vorticity_loop` reads: the rings of these cells in all arrays, all their vertices, and what lies across
-    their sides in both forms. Of a part of a mesh only tiles are made that hold its `own` entities. Raises
+    their sides in both forms. Of a part of a mesh only tiles are made that hold its `own` entities. With `wall_slip`,
+    vertices at coasts read the edges round them once more, shortened to their share of the circulation. Raises
     `InputError` if not even the surroundings of a single cell fit.
     """
     signs = mesh.edge_signs_on_cell, mesh.edge_signs_on_vertex
@@ -128,7 +130,8 @@ def build_tiles(
     first_cell = tile_bounds(int(needed.min()), int(needed.max()) + 1, cells_per_tile)
     first_edge = np.searchsorted(ends[edge_order, 0], first_cell)
     edge_rank = inverse_order(edge_order)
-    cutter = _Cutter(mesh, signs, topography, coriolis, gravity, sides, changed_vorticity, cell_rank, edge_rank)
+    shares = shares_of_circulation(whole, wall_slip)
+    cutter = _Cutter(mesh, signs, shares, topography, coriolis, gravity, sides, changed_vorticity, cell_rank, edge_rank)
     pieces = [
         cutter.cut(
             cell_order[first_cell[tile] : first_cell[tile + 1]],
@@ -154,6 +157,7 @@ def build_tiles(
             with_border=with_border,
             changed_vorticity=changed_vorticity,
             own=own,
+            wall_slip=wall_slip,
         )
     halo, halo_parts = packed([piece.halo for piece in pieces], np.uint32)
     indices, index_parts = packed([piece.indices for piece in pieces], np.uint16)
@@ -190,6 +194,7 @@ class _Cutter:
         self,
         mesh: VoronoiMesh,
         signs: tuple[Signs, Signs],
+        shares: Array,
         topography: Array,
         coriolis: Array,
         gravity: float,
@@ -204,6 +209,9 @@ class _Cutter:
         self.planetary = coriolis * mesh.area_triangle
         self.ratio = mesh.dv_edge / mesh.dc_edge
         self.on_cell, self.on_vertex = signs
+        self.shares = shares
+        inner = mesh.cells_on_edge[:, 0] != mesh.cells_on_edge[:, 1]
+        self.turns = inner[mesh.edges_on_vertex] & (signs[1] != 0)  # along walls nothing turns
         self.sides, self.changed_vorticity = sides, changed_vorticity
         self.prefix = _area_passed(mesh)
         self.local_cells = LocalNumbers(mesh.n_cells)
@@ -248,6 +256,11 @@ class _Cutter:
         if missing.any():
             round_edges[missing] = len(lengths)
             halo_edges, lengths = np.append(halo_edges, 0), np.append(lengths, 0.0)
+        shares = np.where(self.turns[round_vertices], self.shares[round_vertices][:, None], 1.0)
+        again = mesh.edges_on_vertex[round_vertices][shares < 1.0]
+        round_edges[shares < 1.0] = len(lengths) + np.arange(len(again))
+        halo_edges = np.append(halo_edges, again)
+        lengths = np.append(lengths, shares[shares < 1.0] * mesh.dc_edge[again])
         ratio = np.where(self.on_cell[ringed] == 0, 0.0, self.ratio[mesh.edges_on_cell[ringed]])
         piece = _Piece(
             halo=[

@@ -52,6 +52,7 @@ class FusedMethod:
             with_border=with_border,
             changed_vorticity=bool(model.terms_in_stages),
             own=model.processes.own,
+            wall_slip=model.wall_slip,
         )
         self.model = model
         self._scratch = _scratch(self.tiles)

@@ -84,3 +84,17 @@ def test_options_reach_the_run(trisk, mesh_file: Path, tmp_path: Path, option: s
     code, _, err = trisk(*run, option, -1, "--force")
     assert code == 2
     assert "-1" in err
+
+
+def test_slip_along_walls_is_recorded(trisk, mesh_file: Path, tmp_path: Path) -> None:
+    """In the record always; in the files where there is some, so that those of earlier versions stay as they were."""
+    for slip, attribute in ((0.0, None), (0.5, 0.5)):
+        run = ("run", "williamson5", "--mesh", mesh_file, "--days", 0.05, "-q", "-o", tmp_path / f"run{slip}")
+        assert trisk(*run, "--wall-slip", slip) == (0, "", "")
+        assert json.loads((tmp_path / f"run{slip}" / "run.json").read_text())["configuration"]["wall_slip"] == slip
+        for name in ("history.nc", "diagnostics.nc"):
+            with netCDF4.Dataset(tmp_path / f"run{slip}" / name) as file:
+                assert getattr(file, "wall_slip", None) == attribute
+    code, _, err = trisk(*run, "--wall-slip", -1, "--force")
+    assert code == 2
+    assert "the wall slip is -1; it must be a number from 0 to 1" in err

@@ -42,6 +42,10 @@ UpwindingFactor = Annotated[
 DissipationCoefficient = Annotated[
     float, typer.Option("--dissipation", help="Coefficient of biharmonic dissipation, m4/s.")
 ]
+WallSlip = Annotated[
+    float,
+    typer.Option("--wall-slip", help="Slip along coasts, from 0 (no slip) to 1 (free slip: no vorticity at coasts)."),
+]
 Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Show no progress and no summary.")]
 Recompute = Annotated[
     bool,

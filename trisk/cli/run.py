@@ -14,6 +14,7 @@ from trisk.cli.options import (
     Scheme,
     Settings,
     UpwindingFactor,
+    WallSlip,
 )
 
 
@@ -54,6 +55,7 @@ def run(
     anticipation: AnticipationFraction = 0.0,
     upwinding: UpwindingFactor = 0.0,
     dissipation: DissipationCoefficient = 0.0,
+    wall_slip: WallSlip = 0.0,
     fields: Annotated[
         str | None,
         typer.Option(
@@ -103,6 +105,7 @@ def run(
         "dissipation": dissipation,
         "scheme": scheme,
         "upwinding": upwinding,
+        "wall_slip": wall_slip,
     }
     # Refuse what can be refused before a mesh is made in vain.
     asked = Options(**options)

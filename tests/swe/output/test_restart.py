@@ -210,6 +210,7 @@ def test_another_mesh_case_or_option_is_named(icosahedral_mesh: VoronoiMesh, tmp
             ("integrator", "rrk4"),
             ("anticipation", 0.5),
             ("upwinding", 0.25),
+            ("wall_slip", 0.5),
             ("dissipation", 1e14),
             ("sampling", "mean"),
         ),

@@ -12,7 +12,7 @@ import pytest
 from mesh import VoronoiMesh
 from swe.parallel.exact_sum import exact_sums
 from tests.conftest import random_mesh
-from tests.cut_mesh import without_cap
+from tests.cut_mesh import random_sea, without_cap
 from tests.swe.parallel.short_run import fields_of, hash_of, row_of, short_run
 from tests.under_mpiexec import needs_mpi, on_processes
 
@@ -81,6 +81,19 @@ def test_runs_on_other_meshes(icosahedral_mesh: VoronoiMesh, kind: str, tmp_path
     mesh = without_cap(icosahedral_mesh) if kind == "coast" else random_mesh(700, seed=4)
     runs = [{}, {"integrator": "rrk4"}, {**CONSISTENT, "dissipation": 1e11}]
     require_same_runs(mesh, 3, [{"time_step": None, **options} for options in runs], tmp_path)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("processes", [2, 3])
+def test_runs_on_a_sea_with_islands(icosahedral_mesh: VoronoiMesh, processes: int, tmp_path: Path) -> None:
+    """Coasts that cross from part to part, with slip along them: the rim of a part is no coast."""
+    runs: list[dict[str, Any]] = [
+        {"integrator": "rrk4"},
+        {"wall_slip": 0.5},
+        {"wall_slip": 1.0, "integrator": "rfbrk3", "dissipation": 1e15},
+        {"wall_slip": 0.3, **CONSISTENT},
+    ]
+    require_same_runs(random_sea(icosahedral_mesh, islands=6), processes, runs, tmp_path)
 
 
 @pytest.mark.slow
