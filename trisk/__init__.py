@@ -17,7 +17,10 @@ _PLACES = {
             "write_mesh",
         ),
     ),
-    "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
+    "swe": (
+        *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),
+        *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
+    ),
     "cases": (
         *("CASES", "Case", "Galewsky", "Hollingsworth", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5"),
         *("Williamson6", "find_case", "parameter"),

@@ -1,0 +1,30 @@
+"""Laplacian viscosity, du/dt = A lap u, with the discrete Laplacian of `swe.equations.dissipation`."""
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.voronoi_mesh import VoronoiMesh
+from swe.equations.dissipation import BiharmonicDissipation
+from swe.equations.terms import Forcing
+from swe.forcing.places import OncePerMesh, coefficient
+from swe.state import State
+
+
+class Viscosity(Forcing):
+    """Laplacian viscosity, du/dt = A lap u = A [grad(div u) + k x grad(curl u)], with the `viscosity` A, m2/s.
+
+    At a wall the vorticity is that of a fluid that does not slip along it. A step is stable while A dt L stays below
+    2.8 with rk4, where L is 24 / d^2 on hexagons whose centres are d apart. Raises `InputError` where the
+    viscosity is negative.
+    """
+
+    def __init__(self, viscosity: float, name: str = "viscosity") -> None:
+        super().__init__(name, acceleration=self._acceleration)
+        self.viscosity = coefficient("the viscosity", viscosity)
+        self._operator = OncePerMesh(lambda mesh: BiharmonicDissipation(mesh, self.viscosity))
+
+    def _acceleration(self, mesh: VoronoiMesh, state: State, time: float) -> Array:
+        result = np.empty(mesh.n_edges)
+        self._operator(mesh).laplacian(state.normal_velocity, result)
+        result *= self.viscosity
+        return result
