@@ -22,8 +22,8 @@ _PLACES = {
         *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
     ),
     "cases": (
-        *("CASES", "Case", "Galewsky", "Hollingsworth", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5"),
-        *("Williamson6", "find_case", "parameter"),
+        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "KelvinWave", "LakeAtRest", "Munk", "Seiche"),
+        *("Stommel", "Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),
 }

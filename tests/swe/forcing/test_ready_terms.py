@@ -26,6 +26,7 @@ from swe.diagnostics.budgets import measure_rates
 from swe.diagnostics.invariants import measure_invariants
 from swe.integrators import Integrator
 from swe.output.files import read_series
+from swe.run.composition import plain_method
 from tests.cut_mesh import without_cap
 from tests.swe.random_model import random_model
 
@@ -206,3 +207,39 @@ def test_a_stress_of_the_wrong_shape_is_named(small_mesh: VoronoiMesh) -> None:
     model, state = random_model(small_mesh, wind, seed=1)
     with pytest.raises(InputError, match=r"the acceleration of the term wind failed at 0 s: ValueError"):
         model.tendency(state, state.empty_like())
+
+
+@dataclass(frozen=True, repr=False)
+class Viscous(Williamson2):
+    """A zonal flow in a very viscous fluid."""
+
+    name: ClassVar[str] = "viscous"
+    viscosity: float = 1e8
+
+    def terms(self) -> tuple[Forcing, ...]:
+        return (Viscosity(self.viscosity),)
+
+
+@pytest.mark.parametrize("integrator", ["rk4", "fbrk3"])
+@pytest.mark.parametrize("cut", [False, True])
+def test_viscosity_bounds_the_time_step(icosahedral_mesh: VoronoiMesh, integrator: Integrator, cut: bool) -> None:
+    """The default step is stable, and not much shorter than it must be; a longer one is warned of."""
+    mesh = without_cap(icosahedral_mesh) if cut else icosahedral_mesh
+    simulation = Simulation(mesh, Viscous(), integrator=integrator)
+    free = Simulation(mesh, Viscous(viscosity=0.0), integrator=integrator)
+    step = simulation.configuration.time_step
+    assert (
+        step
+        < 0.5 * free.configuration.time_step
+        == 0.5 * Simulation(mesh, Williamson2(), integrator=integrator).configuration.time_step
+    )
+    random = np.random.default_rng(2).normal(size=mesh.n_edges)
+    for steps, longer in ((60, 1.0), (60, 3.0)):
+        state = simulation.state.copy()
+        inner = np.ones(mesh.n_edges)
+        inner[wall_edges(mesh)] = 0.0
+        state.normal_velocity[:] = random * inner
+        plain_method(simulation.model, state, integrator).advance(state, longer * step, steps)
+        assert (np.abs(state.normal_velocity).max() < 50.0) == (longer == 1.0)
+    with pytest.warns(UserWarning, match=r"likely to be unstable, as it is long for the viscosity; one of"):
+        Simulation(mesh, Viscous(), integrator=integrator, time_step=1.2 * step)
