@@ -65,6 +65,7 @@ verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%.done)  ## 
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/galewsky/runs/scvt-%) -o $(STUDY)/galewsky/maps
 	$(BIN)/trisk compare $(GALEWSKY_CELLS:%=$(STUDY)/jet-%) $(foreach day,1 2 3 4 5 6,--day $(day)) -o $(STUDY)/jet
 	$(BIN)/python docs/tools/hollingsworth_page.py $(STUDY)/hollingsworth
+	$(BIN)/python docs/tools/basins_page.py > $(STUDY)/basins.md
 	$(BIN)/trisk spectra $(STUDY)/williamson5/runs/scvt-40962 --day 15 --day 50 -o $(STUDY)/spectra
 
 $(STUDY)/jet-%.done: runs/mesh.%.nc

@@ -1,18 +1,26 @@
 """Test cases: parameters, initial state and, where it is known, exact solution; one module per paper."""
 
 from cases.base import Case, parameter
+from cases.basins import KelvinWave, Seiche
 from cases.galewsky import Galewsky
+from cases.gyres import DoubleGyre, Stommel
 from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
+from cases.munk import Munk
 from cases.registry import CASES, find_case
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 
 __all__ = [
     "CASES",
     "Case",
+    "DoubleGyre",
     "Galewsky",
     "Hollingsworth",
+    "KelvinWave",
     "LakeAtRest",
+    "Munk",
+    "Seiche",
+    "Stommel",
     "Williamson1",
     "Williamson2",
     "Williamson5",

@@ -3,17 +3,23 @@
 from collections.abc import Mapping
 
 from cases.base import Case
+from cases.basins import KelvinWave, Seiche
 from cases.case_file import is_address, load_case
 from cases.galewsky import Galewsky
+from cases.gyres import DoubleGyre, Stommel
 from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
+from cases.munk import Munk
 from cases.parameters import Value, with_parameters
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 from swe.errors import InputError
 
 CASES: dict[str, type[Case]] = {
     case.name: case
-    for case in (Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest, Hollingsworth)
+    for case in (
+        *(Williamson1, Williamson2, Williamson5, Williamson6, Galewsky, LakeAtRest, Hollingsworth),
+        *(Stommel, Munk, KelvinWave, Seiche, DoubleGyre),
+    )
 }
 
 

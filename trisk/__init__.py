@@ -9,10 +9,13 @@ _PLACES = {
         *("build_operators", "cull_mesh", "find_region", "mesh_from_points", "mesh_quality", "normal_component"),
         *("partition_mesh", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
     ),
-    "swe": ("Callback", "Forcing", "InputError", "RunError", "ShallowWaterModel", "Simulation", "State"),
+    "swe": (
+        *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),
+        *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
+    ),
     "cases": (
-        *("CASES", "Case", "Galewsky", "Hollingsworth", "LakeAtRest", "Williamson1", "Williamson2", "Williamson5"),
-        *("Williamson6", "find_case", "parameter"),
+        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "KelvinWave", "LakeAtRest", "Munk", "Seiche"),
+        *("Stommel", "Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),
 }

@@ -22,7 +22,7 @@ ROOMS = {
         "generation",
         "files",
     ),
-    "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
+    "swe": ("parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies", "adaptation"),
     "trisk": ("processes", "report", "arguments", "cli", "mesh_cli"),

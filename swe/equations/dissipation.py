@@ -51,7 +51,13 @@ class BiharmonicDissipation(Term):
 
     @property
     def largest_time_step(self) -> float:
-        """Longest stable time step, s: 2 / (nu L^2), where L bounds the eigenvalues of lap.
+        """Longest stable time step, s: 2 / (nu L^2), where L bounds the eigenvalues of lap."""
+        rate = self.coefficient * self.largest_eigenvalue**2
+        return 2.0 / rate if rate > 0.0 else float("inf")
+
+    @property
+    def largest_eigenvalue(self) -> float:
+        """A bound L on the eigenvalues of lap, 1/m2, by their magnitude.
 
         By Gershgorin's theorem the gradient of divergence is at most 2 sum_e l_e / (d_e A_i) at any cell, and that of
         curl at most 2 sum_e d_e / (l_e A_v) at any vertex; where one of them acts, the other vanishes. Walls, where
@@ -63,9 +69,7 @@ class BiharmonicDissipation(Term):
         at_cells = np.where(mesh.on_ring, flow[mesh.edges_on_cell], 0.0).sum(axis=1) / mesh.area_cell
         shares = np.abs(self._circulation_signs)
         at_vertices = (shares * circulation[mesh.edges_on_vertex]).sum(axis=1) / mesh.area_triangle
-        bound = 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
-        rate = self.coefficient * bound**2
-        return 2.0 / rate if rate > 0.0 else float("inf")
+        return 2.0 * max(float(at_cells.max()), float(at_vertices.max()))
 
     def laplacian(self, velocity: Array, result: Array) -> None:
         """Write lap u at edges (n_edges,), 1/(m s), into `result`; zero at walls."""

@@ -105,6 +105,10 @@ class Forcing(Term):
         changed = (of_source if source else set()) | (of_acceleration if acceleration else set())
         self.changes = tuple(integral for integral in INTEGRALS if integral in changed)
 
+    def stable_step(self, mesh: VoronoiMesh) -> float:
+        """Longest time step, s, that the term itself stands on `mesh`, in metres; without bound by default."""
+        return float("inf")
+
     def add(self, mesh: VoronoiMesh, state: State, time: float, tendency: State) -> None:
         """See `Term`."""
         self.add_acceleration(mesh, state, time, tendency.normal_velocity)

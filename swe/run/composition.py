@@ -54,7 +54,10 @@ def rings_needed(options: Options) -> int:
 
 
 def default_time_step(start: CaseFields, options: Options, processes: Processes = ONE_PROCESS) -> float:
-    """Largest step, s, up to the integrator's default Courant number that divides the shorter output interval."""
+    """Largest step, s, up to the integrator's default Courant number that divides the shorter output interval.
+
+    The terms of the case may ask for a shorter one (`Forcing.stable_step`).
+    """
     case, interval = start.case, min(options.snapshot_interval, options.diagnostics_interval)
     per_second = courant_number(
         closed_mesh(start.mesh), start.state, case.gravity, case.prescribed_wind, 1.0, processes
@@ -62,8 +65,12 @@ def default_time_step(start: CaseFields, options: Options, processes: Processes 
     if not np.isfinite(per_second):
         raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
     courant = STEPPINGS[options.integrator].default_courant_number
+    per_term = (1.0 / term.stable_step(start.mesh) for term in start.forcings)
+    (of_terms,) = processes.largest(np.array([max(per_term, default=0.0)]))
+    limits = [courant / per_second] if per_second > 0.0 else []
+    limits += [1.0 / float(of_terms)] if of_terms > 0.0 else []
     # Where nothing moves, under a prescribed wind of zero, any step will do.
-    return dividing_step(courant / per_second, interval) if per_second > 0.0 else interval
+    return dividing_step(min(limits), interval) if limits else interval
 
 
 def require_keeping_energy(integrator: Integrator, terms: Sequence[Term]) -> None:
@@ -144,15 +151,15 @@ def warnings_before(
     """What is likely to go wrong during a run, in sentences."""
     time_step = configuration.time_step
     waves = time_step * STEPPINGS[configuration.integrator].stable_courant_number / max(initial_courant_number, 1e-300)
-    damping = min(
-        (term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)),
-        default=float("inf"),
-    )
+    limits = {term.name: term.stable_step(start.mesh) for term in start.forcings}
+    limits |= {term.name: term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)}
+    term = min(limits, key=lambda name: limits[name], default="")
+    damping = limits.get(term, float("inf"))
     if time_step > min(waves, damping):
         cause = (
             f"the Courant number is {initial_courant_number:.3g}"
             if waves < damping
-            else "it is long for the dissipation"
+            else f"it is long for the {term.replace('_', ' ')}"
         )
         yield (
             f"a time step of {time_step:g} s is likely to be unstable, as {cause}; one of "

@@ -11,6 +11,7 @@ import pytest
 from cases import find_case
 from mesh import VoronoiMesh
 from swe import Simulation
+from swe.output.files import read_series
 
 FILE = '''
 from dataclasses import dataclass
@@ -40,6 +41,26 @@ class Vortex(Case):
 HOUR = 1.0 / 24.0
 
 
+FORCED = (
+    FILE.replace("class Vortex(Case)", "class Forced(Case)").replace(
+        "from cases import Case, parameter", "from cases import Case, parameter\nfrom swe import Forcing, LinearDrag"
+    )
+    + '''
+    def terms(self):
+        return LinearDrag(1e-5), Forcing("tide", acceleration=tide, source=rain)
+
+
+def tide(mesh, state, time):
+    """Towards the moon, whatever the state."""
+    return 1e-5 * np.cos(mesh.angle_edge) * np.sin(2.0 * mesh.lon_edge - 1.4e-4 * time)
+
+
+def rain(mesh, state, time):
+    return 1e-6
+'''
+)
+
+
 @pytest.fixture
 def address(tmp_path: Path) -> str:
     """The file with the case, and the name of the class."""
@@ -66,3 +87,16 @@ def test_an_added_case_shows_its_parameters(address: str) -> None:
     rows = [line.replace("│", " ").split() for line in shown.stdout.splitlines()]
     assert ["depth", "5000", "m", "Depth", "of", "the", "fluid"] in rows
     assert ["wind_speed", "20", "m/s"] in [row[:3] for row in rows]
+
+
+def test_an_added_case_brings_terms_of_its_own(icosahedral_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    """Beside ready ones, without touching the package; the diagnostics have the budgets of both."""
+    path = tmp_path / "forced.py"
+    path.write_text(FORCED)
+    simulation = Simulation(icosahedral_mesh, find_case(f"{path}:Forced"), tmp_path / "run", diagnostics_interval=600.0)
+    assert [term.name for term in simulation.model.terms] == ["linear_drag", "tide"]
+    simulation.run(days=HOUR, progress=False)
+    series = read_series(tmp_path / "run" / "diagnostics.nc")
+    assert np.all(series["total_energy_rate_linear_drag"] < 0.0)
+    assert np.all(series["total_energy_rate_tide"] != 0.0)
+    assert series["mass"][-1] - series["mass"][0] == pytest.approx(1e-6 * 3600.0 * simulation.model.area, rel=1e-9)

@@ -16,6 +16,15 @@ MOUNTAIN = {
     "mountain_longitude": (4.71238898038469, "rad"),
     "mountain_latitude": (0.5235987755982989, "rad"),
 }
+SECTOR = {
+    "depth": (1000.0, "m"),
+    "west": (0.0, "rad"),
+    "east": (1.0471975511965976, "rad"),
+    "south": (0.17453292519943295, "rad"),
+    "north": (0.8726646259971648, "rad"),
+    "wind_stress": (0.01, "N/m2"),
+}
+WAVE = {"depth": (1000.0, "m"), "amplitude": (0.1, "m")}
 PARAMETERS = {
     "williamson1": {
         **ROTATION,
@@ -46,6 +55,19 @@ PARAMETERS = {
     },
     "lake-at-rest": {**MOUNTAIN, "surface_height": (5960.0, "m")},
     "hollingsworth": {**ROTATION, "depth": (50.0, "m")},
+    "stommel": {**SECTOR, "drag_rate": (1.25e-5, "1/s")},
+    "munk": {**SECTOR, "viscosity": (2.2e6, "m2/s")},
+    "kelvin-wave": {**WAVE, "wave_number": (4, "")},
+    "seiche": {**WAVE, "rotation_rate": (0.0, "1/s"), "degree": (2, ""), "order": (0, "")},
+    "double-gyre": {
+        "gravity": (0.05, "m/s2"),
+        "depth": (1000.0, "m"),
+        "wind_stress": (0.1, "N/m2"),
+        "wind_south": (0.2617993877991494, "rad"),
+        "wind_north": (1.1344640137963142, "rad"),
+        "drag_rate": (1e-7, "1/s"),
+        "viscosity": (500.0, "m2/s"),
+    },
 }
 """Default and unit of every parameter; Williamson et al. (1992), Galewsky et al. (2004)."""
 
@@ -57,8 +79,22 @@ DECLARED = {
     "galewsky": (6.0, None, False, False),
     "lake-at-rest": (5.0, None, True, False),
     "hollingsworth": (20.0, None, True, False),
+    "stommel": (15.0, None, True, False),
+    "munk": (20.0, None, True, False),
+    "kelvin-wave": (5.0, None, True, False),
+    "seiche": (10.0, None, True, False),
+    "double-gyre": (3650.0, None, False, False),
 }
 """Days of the paper, accepted order, whether the solution is known, whether the wind is prescribed."""
+
+SEAS = "stommel", "munk", "kelvin-wave", "seiche", "double-gyre"
+
+CORIOLIS = {
+    "stommel": lambda latitude: 1.4584e-4 * np.arctanh(np.sin(latitude)),
+    "kelvin-wave": lambda latitude: np.full_like(latitude, 1.4584e-4),
+    "seiche": np.zeros_like,
+}
+"""Of cases that have another one than the Earth."""
 
 
 def test_constants_are_those_of_williamson_et_al() -> None:
@@ -73,7 +109,7 @@ def test_days_and_orders(name: str) -> None:
     case = CASES[name]()
     found = case.recommended_days, case.convergence_order, case.has_exact_solution, case.prescribed_wind
     assert found == DECLARED[name]
-    assert case.background_depth == (1000.0 if name == "williamson1" else 0.0)
+    assert case.background_depth == (1000.0 if name in ("williamson1", *SEAS) else 0.0)
 
 
 def test_every_case_is_declared_here() -> None:
@@ -96,7 +132,8 @@ def test_constants_of_the_planet_enter_once(name: str) -> None:
     longitude, latitude = np.array([0.3, 4.6, 5.0]), np.array([0.9, 0.5, -0.4])
     bare = CASES[name](rotation_rate=0.5 * case.rotation_rate)
     np.testing.assert_allclose(case.coriolis(longitude, latitude), 2.0 * bare.coriolis(longitude, latitude))
-    np.testing.assert_allclose(case.coriolis(longitude, latitude), 1.4584e-4 * np.sin(latitude), rtol=1e-14)
+    expected = CORIOLIS.get(name, lambda latitude: 1.4584e-4 * np.sin(latitude))(latitude)
+    np.testing.assert_allclose(case.coriolis(longitude, latitude), expected, rtol=1e-14)
 
 
 def test_thickness_of_the_jet_by_plain_quadrature() -> None:

@@ -59,6 +59,11 @@ def test_every_case_is_found_by_its_name_and_documented() -> None:
         "galewsky",
         "lake-at-rest",
         "hollingsworth",
+        "stommel",
+        "munk",
+        "kelvin-wave",
+        "seiche",
+        "double-gyre",
     }
     page = (Path(__file__).parents[2] / "docs" / "cases.md").read_text()
     for name, kind in CASES.items():

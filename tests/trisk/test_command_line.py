@@ -82,6 +82,11 @@ def test_cases_are_listed_with_their_parameters(trisk) -> None:
         "galewsky",
         "lake-at-rest",
         "hollingsworth",
+        "stommel",
+        "munk",
+        "kelvin-wave",
+        "seiche",
+        "double-gyre",
     ):
         assert name in out
     code, out, _ = trisk("cases", "williamson6")

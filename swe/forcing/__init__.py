@@ -1,0 +1,1 @@
+"""Ready terms that a case declares (`Case.terms`): wind, drag, viscosity, relaxation of thickness."""
