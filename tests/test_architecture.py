@@ -21,6 +21,7 @@ ROOMS = {
         "parts",
         "partition",
         "generation",
+        "coast",
         "files",
     ],
     "swe": ["", "parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
