@@ -16,6 +16,7 @@ ROOMS = {
         "geometry",
         "triangulation",
         "density",
+        "regions",
         "integrals",
         "discrete",
         "parts",

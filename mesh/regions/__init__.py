@@ -1,0 +1,1 @@
+"""Regions of the sphere: boxes, polygons, fields and the real ocean, with their coastlines."""

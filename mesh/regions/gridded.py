@@ -1,0 +1,134 @@
+"""Regions from NetCDF files: a mask, or a signed distance to the coast, on a grid of longitude and latitude."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+from contourpy import contour_generator
+from numpy.typing import NDArray
+
+from mesh.arrays import Array
+from mesh.density.field_coordinates import read_coordinates, read_numbers
+from mesh.errors import MeshError
+from mesh.geometry.sphere import to_lonlat
+from mesh.regions.outline import joined, signed, straight_on_the_map
+from mesh.regions.region import Region
+from mesh.safe_files import dataset
+
+LAND_MASKS = ("land_binary_mask", "land_area_fraction")
+"""CF standard names of fields that are one on land; all other masks are one at sea."""
+
+TURN, POLE = 360.0, 90.0
+
+WIDEST_GAP = 1.5
+"""In the widest spacing: a grid goes round, or reaches a pole, where it leaves no gap wider than that."""
+
+BORDER = 1e-6
+"""Degrees beyond the edge of a grid of a part of the globe at which all is land."""
+
+
+def read_gridded(path: Path, name: str) -> Region:
+    """The region where the variable `name` of a file is one, if it holds from 0 to 1, or else positive.
+
+    Between the values it is interpolated linearly, and the coast runs where it is half, or zero. Beyond the grid all is
+    land. Raises `MeshError` where the file or the variable cannot be used.
+    """
+    if not path.is_file():
+        raise MeshError(f"{path}: there is no such file; give a NetCDF file with a mask or a signed distance")
+    try:
+        with dataset(path) as file:
+            if name not in file.variables:
+                raise MeshError(
+                    f"{path}: there is no variable named {name}; name one of those that it has, which are "
+                    f"{', '.join(file.variables)}"
+                )
+            longitude, latitude, values = _read(file, file[name], path)
+    except (OSError, RuntimeError, ValueError, IndexError) as error:
+        if isinstance(error, MeshError):
+            raise
+        raise MeshError(f"{path}: {name} cannot be read ({error}); give a mask on a grid") from error
+    longitude, latitude, values = _with_border(longitude, latitude, values)
+    field = _interpolation(longitude, latitude, values)
+    return Region(f"{path}:{name}", _signed_distance(longitude, latitude, values, field), lambda p: field(p) > 0.0)
+
+
+def _read(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> tuple[Array, Array, Array]:
+    """Longitudes (m,) and latitudes (n,) in degrees, ascending, and values (n, m), positive in the region."""
+    latitude, longitude = read_coordinates(file, variable, path)
+    rows, columns = latitude.dimensions, longitude.dimensions
+    sizes = dict(zip(variable.dimensions, variable.shape, strict=True))
+    more = [name for name, size in sizes.items() if size > 1 and name not in (*rows, *columns)]
+    if len(rows) != 1 or len(columns) != 1 or rows == columns or more:
+        raise MeshError(
+            f"{path}: {variable.name} has the dimensions {variable.dimensions}; give it one of latitude and one of "
+            "longitude"
+        )
+    values = read_numbers(variable, path).squeeze(
+        tuple(i for i, n in enumerate(variable.dimensions) if n in more or n not in (*rows, *columns))
+    )
+    if variable.dimensions.index(rows[0]) > variable.dimensions.index(columns[0]):
+        values = values.T
+    if values.min() >= 0.0 and values.max() <= 1.0:
+        values = values - 0.5
+    if getattr(variable, "standard_name", "") in LAND_MASKS:
+        values = -values
+    north, row = np.unique(np.degrees(latitude.values), return_index=True)
+    east, column = np.unique(np.round(np.degrees(longitude.values), 9) % TURN, return_index=True)
+    if min(len(north), len(east)) < 2:
+        raise MeshError(
+            f"{path}: {variable.name} has {len(north)} latitudes and {len(east)} longitudes; give two or more"
+        )
+    return east, north, values[np.ix_(row, column)]
+
+
+def _with_border(longitude: Array, latitude: Array, values: Array) -> tuple[Array, Array, Array]:
+    """The grid with a column that closes the circle, and rows at the poles, or else a border of land."""
+    gaps = np.diff(longitude, append=longitude[0] + TURN)
+    first = (int(gaps.argmax()) + 1) % len(gaps)
+    longitude = np.concatenate([longitude[first:], longitude[:first] + TURN])
+    values, rest = np.roll(values, -first, axis=1), np.delete(gaps, gaps.argmax())
+    if gaps.max() <= WIDEST_GAP * rest.max():
+        longitude, values = np.append(longitude, longitude[0] + TURN), np.hstack([values, values[:, :1]])
+    else:
+        longitude = np.concatenate([[longitude[0] - BORDER], longitude, [longitude[-1] + BORDER]])
+        values = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.abs(values).max())
+    step, land = np.diff(latitude).max(), np.full((1, values.shape[1]), -np.abs(values).max())
+    for end, pole in ((0, -POLE), (-1, POLE)):
+        gap = abs(pole - latitude[end])
+        if gap == 0.0:
+            continue
+        reaches = gap <= WIDEST_GAP * step
+        row = np.full_like(land, values[end].mean()) if reaches else land
+        place = pole if reaches else latitude[end] + np.sign(pole) * BORDER
+        at = 0 if end == 0 else len(latitude)
+        latitude, values = np.insert(latitude, at, place), np.insert(values, at, row, axis=0)
+    return longitude, latitude, values
+
+
+def _interpolation(longitude: Array, latitude: Array, values: Array) -> Callable[[Array], Array]:
+    """Values (n,) between those of a grid at unit vectors (n, 3), those of land beyond it."""
+    from scipy.interpolate import RegularGridInterpolator
+
+    land = -np.abs(values).max()
+    interpolate = RegularGridInterpolator((latitude, longitude), values, bounds_error=False, fill_value=land)
+
+    def field(points: Array) -> Array:
+        east, north = (np.degrees(angle) for angle in to_lonlat(points))
+        return interpolate(np.stack([north, longitude[0] + (east - longitude[0]) % TURN], axis=1))
+
+    return field
+
+
+def _signed_distance(
+    longitude: Array, latitude: Array, values: Array, field: Callable[[Array], Array]
+) -> Callable[[Array], Array]:
+    """The distance to the line where the values are zero, positive where the field is."""
+    lines = contour_generator(x=longitude, y=latitude, z=values).lines(0.0)
+    outline = joined([straight_on_the_map(*np.radians(np.asarray(line)).T) for line in lines])
+
+    def distance(points: Array) -> Array:
+        inside: NDArray[np.bool_] = field(points) > 0.0
+        return signed(outline.distance(points), inside)
+
+    return distance

@@ -1,0 +1,42 @@
+"""A region of the sphere: which points lie in it, how far its coast is, and its coastline for a mesh."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from mesh.arrays import Array
+from mesh.regions.coastline import smooth_coastline
+
+
+@dataclass(frozen=True, eq=False)
+class Region:
+    """A part of the sphere, called the sea; the rest is land, and between them runs the coast.
+
+    `signed_distance` takes unit vectors (n, 3) and gives radians (n,) to the coast, positive in the sea and negative
+    on land. `inside`, where there is one, tells exactly which of them lie in the sea (n,).
+    """
+
+    name: str
+    signed_distance: Callable[[Array], Array]
+    inside: Callable[[Array], NDArray[np.bool_]] | None = None
+
+    def contains(self, points: Array) -> NDArray[np.bool_]:
+        """Which of the unit vectors (n, 3) lie in the sea (n,)."""
+        return self.signed_distance(points) > 0.0 if self.inside is None else self.inside(points)
+
+    def distance(self, points: Array) -> Array:
+        """Distance (n,) of unit vectors (n, 3) to the coast, radians, positive in the sea and negative on land."""
+        return self.signed_distance(points)
+
+    def coastline(self, spacing: float, all_seas: bool = False) -> list[Array]:
+        """Closed rings (m, 3) of unit vectors, the sea to their left, smoothed for cells of a `spacing` in radians.
+
+        The coast of the largest connected sea, the longest ring first, or of `all_seas`; see `smooth_coastline`.
+        Raises `MeshError` where no sea is as wide as the spacing.
+        """
+        return smooth_coastline(self.distance, spacing, all_seas, self.name)
+
+    def __repr__(self) -> str:
+        return f"<Region {self.name}>"
