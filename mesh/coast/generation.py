@@ -24,6 +24,9 @@ SAMPLES = 200_000
 
 METHODS = ("lbfgs", "lloyd")
 
+COAST_SPACINGS = 1.5
+"""Width, in mean spacings, to which the coast is smoothed: bays as narrow as one spacing end in cells of two sides."""
+
 
 @dataclass(frozen=True, eq=False)
 class SeaResult:
@@ -36,14 +39,15 @@ class SeaResult:
 def region_mesh(region: Region, request: MeshRequest, callback: Callback | None = None) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
 
-    The coast is smoothed to the mean spacing. Of the `request` count cells, density, start (`fibonacci` by default, and
+    The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci` by default, and
     `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by default), iterations,
     seconds and seed. Raises `MeshError` if no such mesh can be made.
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)
     limits = coast_limits(request)
-    coastline = Coastline(region.coastline(spacing_before_coastline(region, cells_of(request))))
+    spacing = spacing_before_coastline(region, cells_of(request))
+    coastline = Coastline(region.coastline(COAST_SPACINGS * spacing))
     points = starting_points(coastline, cells_of(request), density, _start_of(request, density), request.seed)
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
