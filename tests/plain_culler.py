@@ -2,7 +2,8 @@
 
 Facts of the format: entities keep their order and rings their places, with 0 where something is gone; an edge with one
 cell has it first, and its vertices follow; lengths, angles, the number of edges of a tangent and all weights stay as
-they were; kites of missing cells are zero and the area of a triangle is the sum of the others.
+they were; rings have room for the widest cell that is kept. Kites of missing cells are zero, and the area of a
+triangle is the sum of the others.
 """
 
 from pathlib import Path
@@ -52,4 +53,9 @@ def culled_arrays(arrays: dict[str, NDArray], keep: NDArray[np.bool_]) -> tuple[
         culled[name][alone] = culled[name][alone][:, ::-1]
     culled["kiteAreasOnVertex"] = np.where(culled["cellsOnVertex"] == 0, 0.0, culled["kiteAreasOnVertex"])
     culled["areaTriangle"] = culled["kiteAreasOnVertex"].sum(axis=1)
+    width = int(culled["nEdgesOnCell"].max())
+    for name in ("cellsOnCell", "edgesOnCell", "verticesOnCell"):
+        culled[name] = culled[name][:, :width]
+    for name in ("edgesOnEdge", "weightsOnEdge"):
+        culled[name] = culled[name][:, : 2 * width]
     return culled, {name: int(marks.sum()) for name, marks in kept.items()}

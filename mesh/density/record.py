@@ -66,6 +66,8 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
         return uniform, ""
     if not (np.isfinite(mesh.mesh_density).all() and mesh.mesh_density.min() > 0.0):
         return None, "unknown, since the density at the centres is not positive and finite everywhere"
+    if mesh.boundary_vertex.any():
+        return None, "unknown, since a mesh with walls does not hold the density between all of its cells"
     between = density_from_cells(normalize(mesh.cell_points), mesh.mesh_density, mesh.cells_on_vertex)
     return between, "for the density interpolated between the cells"
 

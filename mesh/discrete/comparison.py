@@ -70,20 +70,26 @@ def metric_differences(mesh: VoronoiMesh, exact: Metrics) -> Iterator[Difference
 def angle_difference(mesh: VoronoiMesh, exact: Metrics) -> Difference:
     """The angles of edges beside those of the generators.
 
-    At a pole the longitude is arbitrary, and the angle counts from the east that it defines.
+    At a pole the longitude is arbitrary, and the angle counts from the east that it defines. That of a wall follows
+    from its vertices, the less surely the shorter it is.
     """
     turn = about_zero(mesh.angle_edge - angles_in_place(mesh, exact))
-    return _angle("angleEdge", "angle_edge", "edge", turn, turn)
+    walls = mesh.cells_on_edge[:, 1] < 0
+    sure = np.where(walls, np.minimum(exact.dv_edge / exact.dc_edge, 1.0), 1.0)
+    return _angle("angleEdge", "angle_edge", "edge", turn, turn * sure)
 
 
 def angles_in_place(mesh: VoronoiMesh, exact: Metrics) -> Array:
     """Angles (n_edges,) of the normals at the longitudes and latitudes that `mesh` has, radians."""
-    points = np.stack([exact.x_cell, exact.y_cell, exact.z_cell], axis=1)
-    return edge_angles(points, mesh.cells_on_edge, mesh.lon_edge, mesh.lat_edge)
+    cells, edges, vertices = (
+        np.stack([getattr(exact, f"{axis}_{place}") for axis in "xyz"], axis=1) for place in ("cell", "edge", "vertex")
+    )
+    return edge_angles(cells, edges, vertices, mesh, mesh.lon_edge, mesh.lat_edge)
 
 
 def _local_sizes(mesh: VoronoiMesh, exact: Metrics) -> dict[str, Array]:
-    cells = mesh.cells_on_vertex[:, 0]
+    first = mesh.cells_on_vertex[:, 0]
+    cells = np.where(first >= 0, first, mesh.cells_on_vertex.max(axis=1))
     spoke = np.stack([getattr(exact, f"{axis}_vertex") - getattr(exact, f"{axis}_cell")[cells] for axis in "xyz"], 1)
     vertex = np.sqrt(dot(spoke, spoke))
     edge = np.maximum(exact.dc_edge, vertex[mesh.vertices_on_edge].max(axis=1))

@@ -1,6 +1,7 @@
 """Checks that the connectivity arrays of a mesh agree with each other and have the order of `Topology`.
 
-Everything is checked exactly. Errors name the first offending entities, counted from 0.
+Everything is checked exactly. Errors name the first offending entities, counted from 0. A mesh may have walls
+(`mesh.discrete.walls`), if these have their cell first.
 """
 
 from functools import partial
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Index, by_blocks, row_loop
 from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.topology import FILL
+from mesh.discrete.walls import boundary_vertices, has_walls, seas_and_coasts
 from mesh.errors import MeshError, require
 from mesh.voronoi_mesh import Topology
 
@@ -28,6 +30,10 @@ VERTEX_FAULTS = (
     "edgesOnVertex lists an edge that verticesOnEdge gives to other vertices",
     "cellsOnVertex does not lie between one edge and the next in edgesOnVertex",
 )
+BOUNDARY_FAULT = "boundaryVertex is not 1 where cellsOnVertex lacks a cell, and 0 where it has all three"
+WITH_GAPS = frozenset({"cells_on_cell", "cells_on_edge", "cells_on_vertex", "edges_on_vertex"})
+"""Arrays in which an entity may be missing beside a wall."""
+
 EDGE_FAULTS = (
     "verticesOnEdge does not run along the tangent, 90 degrees left of the normal given by cellsOnEdge",
     "edgesOnEdge does not go counter-clockwise round the first cell, then round the second",
@@ -44,6 +50,8 @@ def validate_topology(mesh: Topology) -> None:
     _check_rings(mesh)
     _check_vertices(mesh)
     _check_edges(mesh)
+    if has_walls(mesh):
+        _require_part_of_sphere(mesh)
 
 
 def require_closed(n_cells: int, n_edges: int, n_vertices: int) -> None:
@@ -52,7 +60,18 @@ def require_closed(n_cells: int, n_edges: int, n_vertices: int) -> None:
         raise MeshError(
             f"{n_cells} cells, {n_edges} edges and {n_vertices} vertices do not close a sphere: "
             f"{n_cells} cells need {3 * n_cells - 6} edges and {2 * n_cells - 4} vertices; "
-            "only global meshes are supported"
+            "only meshes with walls, which cellsOnEdge and cellsOnVertex mark by 0, may have others"
+        )
+
+
+def _require_part_of_sphere(mesh: Topology) -> None:
+    """Raise `MeshError` unless a mesh with walls, of which all else is right, lies on a sphere: no handles."""
+    seas, coasts = seas_and_coasts(mesh)
+    if mesh.n_vertices - mesh.n_edges + mesh.n_cells != 2 * seas - coasts:
+        raise MeshError(
+            f"{mesh.n_cells} cells, {mesh.n_edges} edges and {mesh.n_vertices} vertices are no part of a sphere: on "
+            f"one, {seas} separate seas with {coasts} coasts have "
+            f"{2 * seas - coasts + mesh.n_edges - mesh.n_cells} vertices; correct the file"
         )
 
 
@@ -64,7 +83,8 @@ def _check_shapes(mesh: Topology) -> None:
             shape = getattr(mesh, variable.name).shape
             if shape != expected:
                 raise MeshError(f"{variable.file_name} has shape {shape} instead of {expected}")
-    require_closed(mesh.n_cells, mesh.n_edges, mesh.n_vertices)
+    if not has_walls(mesh):
+        require_closed(mesh.n_cells, mesh.n_edges, mesh.n_vertices)
 
 
 def _check_ranges(mesh: Topology) -> None:
@@ -75,16 +95,17 @@ def _check_ranges(mesh: Topology) -> None:
         "cells",
         f"nEdgesOnCell is not between {MINIMUM_RING} and {mesh.max_edges}",
     )
+    walls = has_walls(mesh)
     require(
-        by_blocks(
-            lambda cells, count: count == mesh.n_edges_on_cell[np.clip(cells, 0, mesh.n_cells - 1)].sum(1) - 2,
-            mesh.cells_on_edge,
-            mesh.n_edges_on_edge,
-        ),
+        by_blocks(partial(_are_counts, mesh.n_edges_on_cell), mesh.cells_on_edge, mesh.n_edges_on_edge),
         "edges",
         "nEdgesOnEdge is not the number of other edges of the two cells",
     )
-    require(mesh.boundary_vertex == 0, "vertices", "boundaryVertex is not 0, but a global mesh has no boundary")
+    if walls:
+        require(mesh.cells_on_edge[:, 0] >= 0, "edges", "cellsOnEdge has no first cell; an edge at a wall has it first")
+        require(boundary_vertices(mesh) == mesh.boundary_vertex, "vertices", BOUNDARY_FAULT)
+    else:
+        require(mesh.boundary_vertex == 0, "vertices", "boundaryVertex is not 0, but a global mesh has no boundary")
     for variable in MESH_VARIABLES:
         if variable.of is None:
             continue
@@ -92,26 +113,34 @@ def _check_ranges(mesh: Topology) -> None:
         used = counts.get(variable.dimensions[1])
         if used is None:
             used = np.full(len(values), values.shape[1], np.int32)
-        valid = by_blocks(partial(_are_indices, size), values, used)
+        lowest = FILL if walls and variable.name in WITH_GAPS else 0
+        valid = by_blocks(partial(_are_indices, lowest, size), values, used)
         require(valid, variable.dimensions[0][2:], f"{variable.file_name} holds an index outside 1 to {size}")
 
 
+def _are_counts(n_edges_on_cell: Index, cells: Index, counts: Index) -> NDArray[np.bool_]:
+    """Whether each of the `counts` (n,) is the number of edges, but for their own, of the `cells` (n, 2) there are."""
+    sizes = n_edges_on_cell[np.clip(cells, 0, len(n_edges_on_cell) - 1)] - 1
+    fits: NDArray[np.bool_] = counts == np.where(cells == FILL, 0, sizes).sum(axis=1)
+    return fits
+
+
 @row_loop
-def _are_indices(size: int, rows: Index, counts: Index) -> NDArray[np.bool_]:
-    """Whether each row has numbers of entities, of which there are `size`, up to its count, and fill beyond it."""
+def _are_indices(lowest: int, size: int, rows: Index, counts: Index) -> NDArray[np.bool_]:
+    """Whether each row has numbers, from `lowest` to below `size`, up to its count, and fill beyond it."""
     valid = np.ones(len(rows), np.bool_)
     for row in range(len(rows)):
         for place in range(rows.shape[1]):
             value = rows[row, place]
             if place < counts[row]:
-                valid[row] &= 0 <= value < size
+                valid[row] &= lowest <= value < size
             else:
                 valid[row] &= value == FILL
     return valid
 
 
 def _check_rings(mesh: Topology) -> None:
-    """Every cell's edges, neighbours and vertices agree with those of the edges, each edge in exactly two rings."""
+    """Every cell's edges, neighbours and vertices agree with those of the edges, each edge in the ring of its cells."""
     faults = by_blocks(
         partial(_faults_of_cells, mesh.cells_on_edge, mesh.vertices_on_edge),
         *(np.arange(mesh.n_cells), mesh.n_edges_on_cell),
@@ -120,7 +149,8 @@ def _check_rings(mesh: Topology) -> None:
     *of_edges, of_vertices = CELL_FAULTS
     _require_none(faults, "cells", *of_edges)
     uses = np.bincount(mesh.edges_on_cell[mesh.on_ring], minlength=mesh.n_edges)
-    require(uses == 2, "edges", "edgesOnCell does not list the edge in exactly two cells")
+    cells = np.count_nonzero(mesh.cells_on_edge != FILL, axis=1)
+    require(uses == cells, "edges", "edgesOnCell does not list the edge in exactly two cells, or one at a wall")
     _require_none(faults >> len(of_edges), "cells", of_vertices)
 
 
@@ -158,8 +188,11 @@ def _check_vertices(mesh: Topology) -> None:
         *(np.arange(mesh.n_vertices), mesh.edges_on_vertex, mesh.cells_on_vertex),
     )
     of_edges, of_cells = VERTEX_FAULTS
+    if has_walls(mesh):
+        require(mesh.cells_on_vertex.max(axis=1) != FILL, "vertices", "cellsOnVertex names no cell")
     _require_none(faults, "vertices", of_edges)
-    uses = np.bincount(mesh.edges_on_vertex.ravel(), minlength=mesh.n_edges)
+    edges = mesh.edges_on_vertex
+    uses = np.bincount(edges[edges != FILL], minlength=mesh.n_edges)
     require(uses == 2, "edges", "edgesOnVertex does not list the edge at exactly two vertices")
     _require_none(faults >> 1, "vertices", of_cells)
 
@@ -173,9 +206,13 @@ def _faults_of_vertices(
     for row in range(len(vertices)):
         for corner in range(3):
             edge, vertex = edges[row, corner], vertices[row]
+            before, after = cells[row, (corner + 2) % 3], cells[row, corner]
+            if edge == FILL:
+                if before != FILL or after != FILL:
+                    faults[row] |= 2
+                continue
             if (vertices_on_edge[edge, 0] == vertex) == (vertices_on_edge[edge, 1] == vertex):
                 faults[row] |= 1
-            before, after = cells[row, (corner + 2) % 3], cells[row, corner]
             first, second = cells_on_edge[edge, 0], cells_on_edge[edge, 1]
             if not ((first == before and second == after) or (first == after and second == before)):
                 faults[row] |= 2
@@ -207,6 +244,8 @@ def _faults_of_edges(
         entry = 0
         for side in range(2):
             cell = cells[row, side]
+            if cell == FILL:
+                continue
             count = n_edges_on_cell[cell]
             start = 0  # the ring of the cell holds the edge, as has been checked
             while start < count - 1 and edges_on_cell[cell, start] != edges[row]:

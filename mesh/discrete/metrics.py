@@ -1,8 +1,11 @@
 """Positions, lengths, areas and angles of a Voronoi mesh on the unit sphere."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from mesh.arrays import Array, Index, by_blocks, row_loop, sum_by_index
+from mesh.discrete.walls import boundary_vertices, has_walls
 from mesh.discrete.weights import tangential_weights
 from mesh.geometry.sphere import (
     arc_length,
@@ -13,23 +16,57 @@ from mesh.geometry.sphere import (
     to_lonlat,
 )
 from mesh.geometry.vectors import area_parts, vector_to
-from mesh.voronoi_mesh import Metrics, Topology
+from mesh.voronoi_mesh import Metrics, Topology, VoronoiMesh
+
+SHORT = 1e-6
+"""Of the way from its cell: a wall that is shorter has no direction of its own."""
 
 
-def compute_metrics(points: Array, topology: Topology) -> Metrics:
+@dataclass(frozen=True, eq=False)
+class AtWalls:
+    """What generators do not give where a mesh has walls, on the unit sphere; other rows mean nothing.
+
+    `vertices` (n_vertices, 3) and their `kites` (n_vertices, 3) count at the boundary; without `kites` those of a cell
+    reach to the points of its edges there. `edges` (n_edges, 3) are the points of walls, and `dc_edge` (n_edges,) the
+    distances at which the missing cells stand.
+    """
+
+    vertices: Array
+    edges: Array
+    dc_edge: Array
+    kites: Array | None
+
+
+def at_walls_of(mesh: VoronoiMesh) -> AtWalls | None:
+    """What a mesh has at its walls, None if it has none."""
+    if not has_walls(mesh):
+        return None
+    radius = mesh.sphere_radius
+    kites = mesh.kite_areas_on_vertex / radius**2
+    return AtWalls(normalize(mesh.vertex_points), normalize(mesh.edge_points), mesh.dc_edge / radius, kites)
+
+
+def compute_metrics(points: Array, topology: Topology, at_walls: AtWalls | None = None) -> Metrics:
     """All metrics of the mesh with generators `points` (n_cells, 3), unit vectors, and the given connectivity.
 
     Vertices are the circumcentres of the triangles; an edge's point is the midpoint of the arc between its
     cells, where the two arcs of the edge cross. Kites have signed areas, so that they sum to their triangle
-    even where a circumcentre lies outside; the area of a cell is the sum of its kites.
+    even where a circumcentre lies outside; the area of a cell is the sum of its kites. A mesh with walls needs to be
+    told what is `at_walls`.
     """
-    vertices = by_blocks(lambda cells: circumcenter(*(points[cells[:, k]] for k in range(3))), topology.cells_on_vertex)
-    edges = by_blocks(lambda cells: normalize(points[cells[:, 0]] + points[cells[:, 1]]), topology.cells_on_edge)
-    kites = kite_areas(points, edges, vertices, topology.cells_on_vertex, topology.edges_on_vertex)
-    area_cell = sum_by_index(topology.cells_on_vertex, kites, len(points))
+    vertices = _vertices(points, topology.cells_on_vertex, at_walls)
+    edges = _edges(points, topology.cells_on_edge, at_walls)
     dc_edge = _lengths(points, topology.cells_on_edge)
+    kites = kite_areas(points, edges, vertices, topology.cells_on_vertex, topology.edges_on_vertex)
+    if at_walls is not None:
+        dc_edge = np.where(topology.cells_on_edge[:, 1] < 0, at_walls.dc_edge, dc_edge)
+        if at_walls.kites is not None:
+            kites = np.where(boundary_vertices(topology)[:, None], at_walls.kites, kites)
+        kites = np.where(topology.cells_on_vertex < 0, 0.0, kites)
+    area_cell = sum_by_index(np.maximum(topology.cells_on_vertex, 0), kites, len(points))
     dv_edge = _lengths(vertices, topology.vertices_on_edge)
     at_edge, at_vertex = _coordinates("edge", edges), _coordinates("vertex", vertices)
+    angle_edge = edge_angles(points, edges, vertices, topology, at_edge["lon_edge"], at_edge["lat_edge"])
     del edges, vertices  # the weights need the room
     return Metrics(
         **_coordinates("cell", points),
@@ -37,7 +74,7 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
         **at_vertex,
         dc_edge=dc_edge,
         dv_edge=dv_edge,
-        angle_edge=edge_angles(points, topology.cells_on_edge, at_edge["lon_edge"], at_edge["lat_edge"]),
+        angle_edge=angle_edge,
         area_cell=area_cell,
         area_triangle=kites.sum(axis=1),
         kite_areas_on_vertex=kites,
@@ -45,23 +82,49 @@ def compute_metrics(points: Array, topology: Topology) -> Metrics:
     )
 
 
+def _vertices(points: Array, triangles: Index, at_walls: AtWalls | None) -> Array:
+    """Circumcentres (n_vertices, 3) of triangles, and the vertices at walls."""
+    if at_walls is None:
+        return by_blocks(lambda cells: circumcenter(*(points[cells[:, k]] for k in range(3))), triangles)
+    vertices, inner = at_walls.vertices.copy(), triangles.min(axis=1) >= 0
+    vertices[inner] = _vertices(points, triangles[inner], None)
+    return vertices
+
+
+def _edges(points: Array, cells_on_edge: Index, at_walls: AtWalls | None) -> Array:
+    """Points (n_edges, 3) midway between cells, and those at walls."""
+    edges = by_blocks(lambda cells: normalize(points[cells[:, 0]] + points[cells[:, 1]]), cells_on_edge)
+    return edges if at_walls is None else np.where(cells_on_edge[:, 1:] < 0, at_walls.edges, edges)
+
+
 def _lengths(points: Array, ends: Index) -> Array:
     """Lengths (n,) of the arcs between pairs of points, given by their numbers (n, 2)."""
     return by_blocks(lambda pairs: arc_length(points[pairs[:, 0]], points[pairs[:, 1]]), ends)
 
 
-def edge_angles(points: Array, cells_on_edge: Index, lon_edge: Array, lat_edge: Array) -> Array:
+def edge_angles(
+    points: Array, edges: Array, vertices: Array, topology: Topology, lon_edge: Array, lat_edge: Array
+) -> Array:
     """Angles (n_edges,) of the normals of edges, counter-clockwise from east at the given position, in [-pi, pi].
 
-    Normals are the differences of the generators `points` (n_cells, 3).
+    Normals are the differences of the generators `points` (n_cells, 3); at walls they are square to the way from one of
+    the `vertices` (n_vertices, 3) to the other, or lead from the cell to the point of the edge, of `edges`
+    (n_edges, 3), where these coincide.
     """
 
-    def angles(cells: Index, longitude: Array, latitude: Array) -> Array:
+    def angles(cells: Index, ends: Index, middles: Array, longitude: Array, latitude: Array) -> Array:
         normal = points[cells[:, 1]] - points[cells[:, 0]]
+        wall = np.flatnonzero(cells[:, 1] < 0)
+        if len(wall):
+            tail, head = (vertices[ends[wall, k]] for k in range(2))
+            outward = middles[wall] - points[cells[wall, 0]]
+            along = head - tail
+            short = dot(along, along) < SHORT**2 * dot(outward, outward)
+            normal[wall] = np.where(short[:, None], outward, np.cross(along, head + tail))
         east, north = east_north(longitude, latitude)
         return np.arctan2(dot(normal, north), dot(normal, east))
 
-    return by_blocks(angles, cells_on_edge, lon_edge, lat_edge)
+    return by_blocks(angles, topology.cells_on_edge, topology.vertices_on_edge, edges, lon_edge, lat_edge)
 
 
 def kite_areas(points: Array, edges: Array, vertices: Array, cells_on_vertex: Index, edges_on_vertex: Index) -> Array:

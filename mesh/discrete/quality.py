@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
+from mesh.discrete.walls import has_walls
 from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
 from mesh.integrals.moments import masses_and_moments
 from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
@@ -24,6 +25,8 @@ class Quality:
     equilateral. Distances are chords. `residual` is the largest distance between a generator that was free to move and
     the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known;
     `obtuse` counts Delaunay triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    Beside walls only neighbours and triangles that are there count, and cells as they are; what nothing counts for is
+    not a number.
     """
 
     cells: int
@@ -57,6 +60,9 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
 def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
     chords = edge_chords(mesh)
     sigma, q = neighbour_distance_ratio(mesh, chords), triangle_quality(mesh, chords)
+    obtuse = obtuse_triangles(mesh, chords)
+    if has_walls(mesh):
+        chords, sigma, q = (_numbers_or_one(values) for values in (chords, sigma, q))
     return Quality(
         cells=mesh.n_cells,
         mu=float(chords.max() / chords.min()),
@@ -65,24 +71,30 @@ def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
         q_avg=float(q.mean()),
         q_min=float(q.min()),
         residual=float("nan") if density is None else centroid_residual(mesh, density),
-        obtuse=int(np.count_nonzero(obtuse_triangles(mesh, chords))),
+        obtuse=int(np.count_nonzero(obtuse)),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
     )
 
 
+def _numbers_or_one(values: Array) -> Array:
+    """Those of the values (n,) that are numbers, a single one that is none where there are none."""
+    numbers = values[np.isfinite(values)]
+    return numbers if len(numbers) else np.full(1, np.nan)
+
+
 def edge_chords(mesh: VoronoiMesh) -> Array:
-    """Straight distance between the two cells of each edge (n_edges,), on the unit sphere."""
+    """Straight distance between the two cells of each edge (n_edges,), on the unit sphere; no number at a wall."""
     points = mesh.cell_points / mesh.sphere_radius
 
     def lengths(cells: Index) -> Array:
         difference = points[cells[:, 1]] - points[cells[:, 0]]
-        return np.sqrt(dot(difference, difference))
+        return np.where(cells.min(axis=1) < 0, np.nan, np.sqrt(dot(difference, difference)))
 
     return by_blocks(lengths, mesh.cells_on_edge)
 
 
 def neighbour_distance_ratio(mesh: VoronoiMesh, chords: Array | None = None) -> Array:
-    """Shortest over longest distance to a neighbour, sigma (n_cells,).
+    """Shortest over longest distance to a neighbour, sigma (n_cells,); no number where a cell has no neighbour.
 
     `chords` are those of `edge_chords`, where they are known; here and below.
     """
@@ -91,13 +103,18 @@ def neighbour_distance_ratio(mesh: VoronoiMesh, chords: Array | None = None) -> 
     def ratio(edges: Index, counts: Index) -> Array:
         inside = np.arange(edges.shape[1]) < counts[:, None]
         distances = lengths[np.where(inside, edges, 0)]
-        return np.where(inside, distances, np.inf).min(axis=1) / np.where(inside, distances, 0.0).max(axis=1)
+        inside &= np.isfinite(distances)
+        longest = np.where(inside, distances, 0.0).max(axis=1)
+        return np.where(inside, distances, np.inf).min(axis=1) / np.where(longest > 0.0, longest, np.inf)
 
     return by_blocks(ratio, mesh.edges_on_cell, mesh.n_edges_on_cell)
 
 
 def triangle_quality(mesh: VoronoiMesh, chords: Array | None = None) -> Array:
-    """The measure q of the Delaunay triangles (n_vertices,): twice the inscribed over the circumscribed radius."""
+    """The measure q of the Delaunay triangles (n_vertices,): twice the inscribed over the circumscribed radius.
+
+    No number at the boundary, where two edges of a vertex are walls.
+    """
     lengths = edge_chords(mesh) if chords is None else chords
 
     def quality(edges: Index) -> Array:
@@ -121,9 +138,13 @@ def obtuse_triangles(mesh: VoronoiMesh, chords: Array | None = None) -> NDArray[
 
 def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
     """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
-    points = normalize(mesh.cell_points)
-    triangulation = Triangulation(points, mesh.cells_on_vertex)
-    cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
+    points, spacing = normalize(mesh.cell_points), mean_spacing(mesh.n_cells)
+    if has_walls(mesh):
+        cells = (points, normalize(mesh.vertex_points), *_vertex_rings(mesh))
+        spacing *= float(np.sqrt(mesh.area_cell.sum() / (4.0 * np.pi * mesh.sphere_radius**2)))
+    else:
+        triangulation = Triangulation(points, mesh.cells_on_vertex)
+        cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
     if density is uniform:
         _, moment, _ = masses_and_moments(*cells)
         distances = arc_length(points, normalize(moment))
@@ -131,4 +152,10 @@ def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
         distances = centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
     if mesh.fixed_cells is not None:
         distances = distances[~mesh.fixed_cells]
-    return float(distances.max(initial=0.0)) / mean_spacing(mesh.n_cells)
+    return float(distances.max(initial=0.0)) / spacing
+
+
+def _vertex_rings(mesh: VoronoiMesh) -> tuple[Index, Index]:
+    """Where each cell's vertices start (n_cells + 1,), and those of all cells one after another, counter-clockwise."""
+    starts = np.concatenate([[0], np.cumsum(mesh.n_edges_on_cell)]).astype(np.int32)
+    return starts, mesh.vertices_on_cell[mesh.on_ring]

@@ -48,7 +48,7 @@ def connect(triangles: Index, n_cells: int, cells_on_edge: Index | None = None) 
     first, n_edges_on_cell = _ring_starts(triangles, twins, edge_of, n_cells)
     cells, edges, vertices = _rings(triangles, twins, edge_of, first, n_edges_on_cell, int(n_edges_on_cell.max()))
     cells_on_edge, vertices_on_edge = _ends(triangles, twins, forward)
-    n_edges_on_edge, edges_on_edge = _edges_on_edge(edges, n_edges_on_cell, cells_on_edge)
+    n_edges_on_edge, edges_on_edge = edges_beside(edges, n_edges_on_cell, cells_on_edge)
     return Topology(
         n_edges_on_cell=n_edges_on_cell,
         cells_on_cell=cells,
@@ -211,8 +211,8 @@ def _ends(triangles: Index, twins: Index, forward: Index) -> tuple[Index, Index]
 
 
 @numba.njit(cache=True, parallel=True)
-def _edges_on_edge(edges_on_cell: Index, n_edges_on_cell: Index, cells_on_edge: Index) -> tuple[Index, Index]:
-    """Number and list of the edges round both cells of each edge, the edge itself left out."""
+def edges_beside(edges_on_cell: Index, n_edges_on_cell: Index, cells_on_edge: Index) -> tuple[Index, Index]:
+    """Number and list of the edges round the cells of each edge, `FILL` for one that is missing, but for the edge."""
     n_edges, max_edges = len(cells_on_edge), edges_on_cell.shape[1]
     counts = np.empty(n_edges, np.int32)
     result = np.full((n_edges, 2 * max_edges), FILL, np.int32)
@@ -220,6 +220,8 @@ def _edges_on_edge(edges_on_cell: Index, n_edges_on_cell: Index, cells_on_edge: 
         count = 0
         for side in range(2):
             cell = cells_on_edge[edge, side]
+            if cell == FILL:
+                continue
             place = 0
             while edges_on_cell[cell, place] != edge:
                 place += 1

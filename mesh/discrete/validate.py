@@ -14,7 +14,8 @@ from mesh.conventions import MESH_VARIABLES, dimension_sizes
 from mesh.discrete.comparison import Difference, angle_difference, metric_differences
 from mesh.discrete.connectivity import validate_topology
 from mesh.discrete.identities import identity_residuals
-from mesh.discrete.metrics import compute_metrics
+from mesh.discrete.metrics import at_walls_of, compute_metrics
+from mesh.discrete.topology import FILL
 from mesh.errors import MeshError, require
 from mesh.geometry.sphere import dot, normalize
 from mesh.geometry.vectors import (
@@ -51,7 +52,7 @@ def validate_mesh(mesh: VoronoiMesh, tolerance: float = OWN_TOLERANCE, fresh_met
     check_values(mesh)
     validate_topology(mesh)
     check_orientation(mesh.cell_points / mesh.sphere_radius, mesh)
-    exact = None if fresh_metrics else compute_metrics(normalize(mesh.cell_points), mesh)
+    exact = None if fresh_metrics else compute_metrics(normalize(mesh.cell_points), mesh, at_walls_of(mesh))
     return validate_metrics(mesh, exact, tolerance)
 
 
@@ -141,7 +142,7 @@ def _require_on_sphere(distance: Array, radius: float, place: str) -> None:
 def check_orientation(points: Array, topology: Topology) -> None:
     """Check that triangles and rings run counter-clockwise for generators `points` (n_cells, 3), unit vectors.
 
-    Raises `MeshError`.
+    Of three cells, or of two neighbours in turn, one of which is missing, nothing is known. Raises `MeshError`.
     """
     require(
         by_blocks(partial(_triangles_turn, points), topology.cells_on_vertex),
@@ -161,6 +162,9 @@ def _triangles_turn(points: Array, cells: Index) -> NDArray[np.bool_]:
     turns = np.empty(len(cells), np.bool_)
     for row in range(len(cells)):
         a, b, c = cells[row, 0], cells[row, 1], cells[row, 2]
+        if min(a, b, c) == FILL:
+            turns[row] = True
+            continue
         turns[row] = dot_product(vector_to(points, a), triangle_normal(points, a, b, c)) > 0.0
     return turns
 
@@ -172,6 +176,8 @@ def _rings_turn(points: Array, centers: Array, cells: Index, counts: Index) -> N
     for row in range(len(cells)):
         for place in range(counts[row]):
             following = cells[row, place + 1 if place + 1 < counts[row] else 0]
+            if cells[row, place] == FILL or following == FILL:
+                continue
             spoke = vector_between(centers, row, points, cells[row, place])
             next_spoke = vector_between(centers, row, points, following)
             turns[row] &= triple_product(vector_to(centers, row), spoke, next_spoke) > 0.0
@@ -179,7 +185,7 @@ def _rings_turn(points: Array, centers: Array, cells: Index, counts: Index) -> N
 
 
 def _check_delaunay(mesh: VoronoiMesh) -> None:
-    """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells."""
+    """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells, with walls or without."""
     points, vertices = mesh.cell_points, mesh.vertex_points
     for each in (points, vertices):
         each /= mesh.sphere_radius
@@ -204,7 +210,10 @@ def _run_along_tangent(points: Array, vertices: Array, middles: Array, cells: In
     """Whether the way from the first to the second end (n, 2) of each edge does not run against its tangent."""
     right = np.empty(len(cells), np.bool_)
     for row in range(len(cells)):
-        normal = vector_between(points, cells[row, 0], points, cells[row, 1])
+        if cells[row, 1] == FILL:  # half of the way to where the other cell was
+            normal = vector_between(points, cells[row, 0], middles, row)
+        else:
+            normal = vector_between(points, cells[row, 0], points, cells[row, 1])
         along = vector_between(vertices, ends[row, 0], vertices, ends[row, 1])
         # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
         slack = OUTSIDE_TOLERANCE * dot_product(normal, normal)

@@ -9,14 +9,43 @@ from dataclasses import replace
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from mesh.arrays import Index
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 
 def wall_edges(mesh: VoronoiMesh) -> Index:
     """Edges at which a cell is missing."""
     return np.flatnonzero((mesh.cells_on_edge < 0).any(axis=1))
+
+
+def has_walls(mesh: Topology) -> bool:
+    """Whether any edge lacks a cell."""
+    return bool(mesh.cells_on_edge.min(initial=0) < 0)
+
+
+def boundary_vertices(mesh: Topology) -> NDArray[np.bool_]:
+    """Mask (n_vertices,) of the vertices at which a cell is missing."""
+    at_boundary: NDArray[np.bool_] = mesh.cells_on_vertex.min(axis=1) < 0
+    return at_boundary
+
+
+def seas_and_coasts(mesh: Topology) -> tuple[int, int]:
+    """How many connected seas the cells of a mesh form, and how many closed coasts the walls do."""
+    is_wall = np.zeros(mesh.n_edges, np.bool_)
+    is_wall[(mesh.cells_on_edge < 0).any(axis=1)] = True
+    _, coast = _components(mesh.n_vertices, mesh.vertices_on_edge[is_wall])
+    return _components(mesh.n_cells, mesh.cells_on_edge[~is_wall])[0], len(np.unique(coast[boundary_vertices(mesh)]))
+
+
+def _components(size: int, pairs: Index) -> tuple[int, Index]:
+    """Number of connected components of the graph of `pairs` (n, 2) on so many nodes, and that of each node."""
+    graph = coo_matrix((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
+    count, component = connected_components(graph, directed=False)
+    return int(count), component
 
 
 def closed_mesh(mesh: VoronoiMesh) -> VoronoiMesh:

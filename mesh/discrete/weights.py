@@ -11,7 +11,8 @@ def tangential_weights(topology: Topology, kites: Array, area_cell: Array, dc_ed
     """Weights (n_edges, 2 max_edges) of the normal velocities at `edges_on_edge` in the tangential velocity.
 
     Thuburn et al. (2009), equation (33), with the lengths dv_e'/dc_e of Ringler et al. (2010), equation (24),
-    multiplied in. The order follows `edges_on_edge`; entries beyond `n_edges_on_edge` are zero.
+    multiplied in. The order follows `edges_on_edge`; entries beyond `n_edges_on_edge` are zero. An edge at a wall has
+    the part of its one cell alone.
     """
     return _tangential_weights(
         topology.n_edges_on_cell,
@@ -44,6 +45,8 @@ def _tangential_weights(
         k = 0
         for side in range(2):
             c = cells_on_edge[e, side]
+            if c < 0:
+                continue
             n = n_edges_on_cell[c]
             # The edge's tangent runs counter-clockwise round its first cell and clockwise round its second.
             turn = 1.0 if side == 0 else -1.0

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.conventions import BY_NAME
+from mesh.conventions import BY_NAME, MeshVariable
 from mesh.discrete.connectivity import require_closed, validate_topology
 from mesh.discrete.topology import FILL, connect
 from mesh.discrete.validate import check_orientation
@@ -56,9 +56,7 @@ def arranged_topology(arrays: Arrays, points: Array) -> Topology:
     for name in EDGE_COUNTS:
         if name in arrays:
             _require_count(name, arrays[name], getattr(topology, name))
-    for name in TOPOLOGY_NAMES:
-        if name in arrays and BY_NAME[name].is_index:
-            _require_same_entities(name, arrays[name], getattr(topology, name))
+    require_same_entities(arrays, topology)
     validate_topology(topology)
     check_orientation(points, topology)
     return topology
@@ -116,8 +114,8 @@ def _require_cells(name: str, cells: Index, n_cells: int) -> None:
     require(
         (cells >= 0) & (cells < n_cells),
         place,
-        f"{variable.file_name} holds an index outside 1 to {n_cells}; only global meshes, without a boundary, are "
-        "supported",
+        f"{variable.file_name} holds an index outside 1 to {n_cells}; only a mesh with walls has 0 for what is "
+        "missing, in cellsOnEdge and in cellsOnVertex",
     )
     ordered = np.sort(cells, axis=1)
     require(ordered[:, 1:] != ordered[:, :-1], place, f"{variable.file_name} names one cell twice")
@@ -131,11 +129,18 @@ def _require_count(name: str, found: Index, expected: Index) -> None:
     )
 
 
-def _require_same_entities(name: str, found: Index, expected: Index) -> None:
-    """Each row of `found` has the entities of the row of `expected`, in any order and with any fill beyond them."""
-    variable = BY_NAME[name]
+def require_same_entities(arrays: Arrays, topology: Topology) -> None:
+    """Raise `MeshError` unless all connectivity among the arrays has the entities of the topology, in any order."""
+    for name in TOPOLOGY_NAMES:
+        if name in arrays and BY_NAME[name].is_index:
+            _require_same_rows(name, arrays[name], topology)
+
+
+def _require_same_rows(name: str, found: Index, topology: Topology) -> None:
+    """Each row of `found` has the entities of that of the array `name`, in any order and with any fill beyond them."""
+    variable, expected = BY_NAME[name], getattr(topology, name)
     place = variable.dimensions[0][2:]
-    counts = np.count_nonzero(expected != FILL, axis=1)
+    counts = _counts(variable, topology)
     require(
         counts <= found.shape[1], place, f"{variable.file_name} has room for {found.shape[1]} entries and needs more"
     )
@@ -151,6 +156,13 @@ def _require_same_entities(name: str, found: Index, expected: Index) -> None:
             f"{variable.file_name} holds {here[0]} where cellsOnVertex and cellsOnEdge give {here[1]} (counted from "
             "1); one of them is damaged, so correct the file",
         )
+
+
+def _counts(variable: MeshVariable, topology: Topology) -> Index:
+    """How many entries (n,) of the rows of an array are no fill; one beside a wall may be missing among them."""
+    rows = getattr(topology, variable.name)
+    of_rings = {"max_edges": topology.n_edges_on_cell, "max_edges_2": topology.n_edges_on_edge}
+    return of_rings.get(variable.dimensions[1], np.full(len(rows), rows.shape[1]))
 
 
 def _padded(rows: Index, counts: Index) -> Index:

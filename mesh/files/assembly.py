@@ -10,11 +10,14 @@ from mesh.conventions import BY_NAME
 from mesh.discrete.comparison import angle_difference, angles_in_place, metric_differences
 from mesh.discrete.metrics import compute_metrics
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, check_values, require_on_sphere, require_small
+from mesh.discrete.walls import has_walls
 from mesh.errors import MeshError, require
 from mesh.files.arrange import arrange_kites, arrange_weights, arranged_topology, reordered, topology_in_order
+from mesh.files.at_walls import at_walls_in, normalize_but_for_rounding, vertex_points
 from mesh.files.mesh_file import SPARE, FileContent, fill_rings
+from mesh.files.sea_order import arrange_sea_weights, arranged_sea, has_walls_in
 from mesh.geometry.angles import TURN, eastward
-from mesh.geometry.sphere import dot, from_lonlat, normalize
+from mesh.geometry.sphere import dot, from_lonlat
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
 GENERATORS = ("x_cell", "y_cell", "z_cell")
@@ -60,7 +63,8 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     fill_rings(arrays)
     points, radius = _generators(arrays, content.radius, changes)
     topology = _topology(arrays, points, changes)
-    exact = compute_metrics(points, topology)
+    at_walls = at_walls_in(arrays, topology, points, radius, changes.replaced) if has_walls(topology) else None
+    exact = compute_metrics(points, topology, at_walls)
     density = _density(arrays, len(points), changes)
     topology_arrays = {name: getattr(topology, name) for name in TOPOLOGY_NAMES}
     unit = VoronoiMesh(
@@ -90,7 +94,7 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
         radius = positive_number(attribute)
         if radius is None or np.any(np.abs(distance / radius - 1.0) > OUTSIDE_TOLERANCE):
             radius = _radius_of(points, distance, attribute, changes)
-        return _unit_vectors(points, distance), radius
+        return normalize_but_for_rounding(points), radius
     if not all(name in arrays for name in ("lon_cell", "lat_cell")):
         raise MeshError(
             "xCell, yCell and zCell are missing, and lonCell and latCell too; a mesh file must have its generators"
@@ -104,12 +108,6 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
         radius = 1.0
         changes.said.append("without a sphere_radius the sphere is taken to have radius 1")
     return from_lonlat(longitude, latitude), radius
-
-
-def _unit_vectors(points: Array, distance: Array) -> Array:
-    """The points (n, 3) on the unit sphere; those that are there but for round-off stay as they are, bit for bit."""
-    there = np.abs(distance - 1.0) <= 2.0 * np.finfo(float).eps
-    return np.where(there[:, None], points, normalize(points))
 
 
 def positive_number(attribute: object) -> float | None:
@@ -143,19 +141,22 @@ def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges) -
             "the variable cellsOnVertex is missing; a mesh file must have its triangles (mesh_from_points makes a mesh "
             "of generators alone)"
         )
+    walls = has_walls_in(arrays)
+    at_boundary = (
+        arrays["cells_on_vertex"].min(axis=1) < 0 if walls else np.zeros(len(arrays["cells_on_vertex"]))
+    ).astype(np.int32)
     boundary = arrays.pop("boundary_vertex", None)
-    if boundary is not None and np.any(boundary != 0):
-        changes.replaced.append("boundaryVertex (a closed sphere has none)")
+    if boundary is not None and np.any(boundary != at_boundary):
+        changes.replaced.append("boundaryVertex" if walls else "boundaryVertex (a closed sphere has none)")
     if "cells_on_edge" not in arrays:
         for name in ON_EDGES:
             arrays.pop(name, None)
     missing = [name for name in TOPOLOGY_NAMES if name != "boundary_vertex" and name not in arrays]
     if missing:
         changes.missing.extend(BY_NAME[name].file_name for name in missing)
-    inner = np.zeros(len(arrays["cells_on_vertex"]), dtype=np.int32)
-    topology = topology_in_order({**arrays, "boundary_vertex": inner}, points)
+    topology = topology_in_order({**arrays, "boundary_vertex": at_boundary}, points)
     if topology is None:
-        topology = arranged_topology(arrays, points)
+        topology = arranged_sea(arrays, points, vertex_points(arrays)) if walls else arranged_topology(arrays, points)
         changes.sorted.extend(reordered(arrays, topology))
     return topology
 
@@ -181,17 +182,20 @@ def _metrics_of_file(arrays: dict[str, NDArray], topology: Topology, exact: Metr
     if "weights_on_edge" in metrics:
         if "edges_on_edge" not in arrays:
             del metrics["weights_on_edge"]
-        elif arrays["edges_on_edge"].shape != topology.edges_on_edge.shape or not np.array_equal(
-            arrays["edges_on_edge"], topology.edges_on_edge
-        ):
-            metrics["weights_on_edge"] = arrange_weights(
-                metrics["weights_on_edge"], arrays, topology, exact.weights_on_edge
-            )
+        elif not _lists_the_same_edges(arrays, topology):
+            arrange = arrange_sea_weights if has_walls(topology) else arrange_weights
+            metrics["weights_on_edge"] = arrange(metrics["weights_on_edge"], arrays, topology, exact.weights_on_edge)
     for place in ("cell", "edge", "vertex"):
         longitude = metrics.get(f"lon_{place}")
         if longitude is not None and not np.all((longitude >= 0.0) & (longitude < TURN)):
             metrics[f"lon_{place}"] = eastward(longitude)
     return metrics
+
+
+def _lists_the_same_edges(arrays: dict[str, NDArray], topology: Topology) -> bool:
+    """Whether the edges of tangents are those of the topology, in the same order and as many."""
+    names = ("edges_on_edge", "n_edges_on_edge")
+    return all(np.array_equal(arrays[name], getattr(topology, name)) for name in names if name in arrays)
 
 
 def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None:

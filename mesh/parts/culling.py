@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
+from mesh.discrete.walls import boundary_vertices
 from mesh.errors import MeshError
 from mesh.geometry.angles import about_zero
 from mesh.parts.cutting import without_cells
@@ -28,12 +29,19 @@ def culled(mesh: VoronoiMesh, kept: NDArray[np.bool_]) -> VoronoiMesh:
         raise MeshError(f"the marks of the cells to keep have shape {kept.shape}, but the mesh needs ({mesh.n_cells},)")
     if not kept.any():
         raise MeshError(f"none of the {mesh.n_cells} cells is kept; choose a region that holds the centre of a cell")
-    part = _with_cells_first(without_cells(mesh, ~kept))
-    at_boundary: NDArray[np.bool_] = (part.cells_on_vertex < 0).any(axis=1)
-    result = replace(part, boundary_vertex=at_boundary.astype(np.int32))
+    part = _with_cells_first(_narrowed(without_cells(mesh, ~kept)))
+    result = replace(part, boundary_vertex=boundary_vertices(part).astype(np.int32))
     if is_validated(mesh):
         remember_validated(result)
     return result
+
+
+def _narrowed(part: VoronoiMesh) -> VoronoiMesh:
+    """`part` with room for the edges of its widest cell alone."""
+    width = int(part.n_edges_on_cell.max())
+    of_cells = {name: getattr(part, name)[:, :width] for name in ("cells_on_cell", "edges_on_cell", "vertices_on_cell")}
+    of_edges = {name: getattr(part, name)[:, : 2 * width] for name in ("edges_on_edge", "weights_on_edge")}
+    return replace(part, **of_cells, **of_edges)
 
 
 def _with_cells_first(part: VoronoiMesh) -> VoronoiMesh:

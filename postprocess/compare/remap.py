@@ -63,8 +63,8 @@ def remap_vertices(mesh: VoronoiMesh, longitude: Array, latitude: Array) -> Rema
     A fit to vertices of its own, over two rings of neighbours: the kite-weighted mean over cells would smooth the
     field first, an error of second order like those that are to be measured.
     """
-    across = mesh.vertices_on_edge[mesh.edges_on_vertex].reshape(mesh.n_vertices, -1)
-    ring = across[across != np.arange(mesh.n_vertices)[:, None]].reshape(mesh.n_vertices, 3)
+    across = mesh.vertices_on_edge[mesh.edges_on_vertex].sum(axis=2) - np.arange(mesh.n_vertices)[:, None]
+    ring = np.where(mesh.edges_on_vertex < 0, -1, across)
     return _remap(mesh.lon_vertex, mesh.lat_vertex, ring, longitude, latitude)
 
 

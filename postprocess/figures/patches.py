@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
+from mesh.discrete.walls import has_walls
 from mesh.geometry.sphere import dot, from_lonlat, normalize, to_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
@@ -60,13 +61,27 @@ def cell_patches(mesh: VoronoiMesh) -> Patches:
 
 
 def triangle_patches(mesh: VoronoiMesh) -> Patches:
-    """Delaunay triangles, one for each vertex."""
+    """Delaunay triangles, one for each vertex; of those at the boundary what lies in the cells that are there."""
+    if has_walls(mesh):
+        return _kites(mesh)
     return _of_equal_counts(normalize(mesh.cell_points)[mesh.cells_on_vertex])
 
 
+def _kites(mesh: VoronoiMesh) -> Patches:
+    """The kites round each vertex, from edge to cell to edge, with the vertex in the place of what is missing."""
+    cells, edges = normalize(mesh.cell_points), normalize(mesh.edge_points)
+    vertices = np.repeat(normalize(mesh.vertex_points)[:, None, :], 3, axis=1)
+    corners = np.empty((mesh.n_vertices, 6, 3))
+    for first, points, around in ((0, edges, mesh.edges_on_vertex), (1, cells, mesh.cells_on_vertex)):
+        corners[:, first::2] = np.where(around[..., None] < 0, vertices, points[around])
+    return _of_equal_counts(corners)
+
+
 def edge_patches(mesh: VoronoiMesh) -> Patches:
-    """The quadrilateral of the two cell centres and the two vertices of each edge."""
+    """The quadrilateral of the two cell centres and the two vertices of each edge; at a wall half of it."""
     centres, vertices = normalize(mesh.cell_points)[mesh.cells_on_edge], normalize(mesh.vertex_points)
+    if has_walls(mesh):
+        centres = np.where(mesh.cells_on_edge[..., None] < 0, normalize(mesh.edge_points)[:, None, :], centres)
     ends = vertices[mesh.vertices_on_edge]
     return _of_equal_counts(np.stack([centres[:, 0], ends[:, 0], centres[:, 1], ends[:, 1]], axis=1))
 

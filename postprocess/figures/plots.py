@@ -82,6 +82,9 @@ def mesh_figure(mesh: VoronoiMesh) -> Figure:
         (triangle_quality(mesh), "q of Delaunay triangles, 1 if equilateral", "triangles"),
     )
     for axes, (values, label, count) in zip(right.subplots(2, 1), distributions, strict=True):
+        values = values[np.isfinite(values)]  # those beside walls are none
+        if not len(values):
+            continue
         axes.hist(values, bins=60, color="tab:blue")
         axes.set_yscale("log")
         axes.set_xlabel(label)

@@ -55,7 +55,5 @@ def _measure(file: Path, recompute_metrics: bool, as_json: bool) -> None:
         print_quality(mesh, str(file))
         return
     found, note = quality_and_note(mesh)
-    measured = asdict(found)
-    if not math.isfinite(measured["residual"]):
-        measured["residual"] = None
+    measured = {name: value if math.isfinite(value) else None for name, value in asdict(found).items()}
     typer.echo(json.dumps({**measured, "residual_note": note}))
