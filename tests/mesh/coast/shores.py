@@ -12,6 +12,7 @@ from mesh.generation.optimizer import Limits
 from mesh.geometry.sphere import east_north, from_lonlat
 
 CENTER = (np.radians(30.0), np.radians(40.0))
+POLE = from_lonlat(np.array(CENTER[0]), np.array(CENTER[1]))
 RADIUS = 0.5
 
 

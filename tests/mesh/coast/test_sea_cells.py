@@ -13,7 +13,7 @@ from mesh.density.named import uniform
 from mesh.geometry.sphere import fibonacci_points, normalize
 from mesh.integrals.moments import evaluate, number_of_blocks
 from mesh.integrals.weighted_moments import WeightedCells
-from tests.mesh.coast.shores import cells_of_sea, converged, wavy_ring, wavy_sea
+from tests.mesh.coast.shores import POLE, RADIUS, cells_of_sea, converged, wavy_ring, wavy_sea
 
 
 def energy_and_moments(points: Array, sea: SeaCells) -> tuple[float, Array]:
@@ -41,6 +41,7 @@ def masses(points: Array, sea: SeaCells) -> Array:
 
 def at_sea(sea: SeaCells, count: int) -> Array:
     samples = fibonacci_points(count)
+    samples = samples[samples @ POLE > np.cos(1.2 * RADIUS)]
     inside: NDArray[np.bool_] = sea.coastline.contains(samples)
     return samples[inside]
 
