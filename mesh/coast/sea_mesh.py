@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.arrays import Array, sum_by_index
+from mesh.arrays import Array
 from mesh.coast.portions import Portions, portions_of
 from mesh.coast.sea_cells import SeaCells
 from mesh.coast.sea_topology import sea_topology

@@ -9,6 +9,7 @@ from mesh.coast.start import fillers, sea_spacing, starting_points
 from mesh.geometry.sphere import fibonacci_points, from_lonlat
 from tests.mesh.coast.shores import POLE, RADIUS, wavy_ring, wavy_sea
 
+
 @pytest.mark.parametrize("sea_within", [True, False])
 def test_area_and_distance_of_a_cap(sea_within: bool) -> None:
     coast = Coastline([wavy_ring(2000, amplitude=0.0, sea_within=sea_within)])
