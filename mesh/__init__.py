@@ -16,6 +16,9 @@ from mesh.errors import MeshError, MeshWarning
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.pipeline import scvt_mesh
 from mesh.partition.partition import Partition, partition_mesh
+from mesh.parts.sea_cells import cull_mesh
+from mesh.regions.find import find_region
+from mesh.regions.region import Region
 from mesh.voronoi_mesh import VoronoiMesh
 
 __all__ = [
@@ -24,8 +27,11 @@ __all__ = [
     "Operators",
     "Partition",
     "Quality",
+    "Region",
     "VoronoiMesh",
     "build_operators",
+    "cull_mesh",
+    "find_region",
     "mesh_from_points",
     "mesh_quality",
     "normal_component",

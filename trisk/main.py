@@ -12,13 +12,14 @@ from typing import TextIO, cast
 
 import typer
 
-from trisk.cli import bench, cases, compare, mesh, partition, plot, quality, reference, run, spectra, study
+from trisk.cli import bench, cases, compare, plot, reference, run, spectra, study
+from trisk.mesh_cli import cull, mesh, partition, quality
 from trisk.processes.launch import launch_of
 from trisk.processes.together import run_together
 from trisk.report.streams import ErrorOutput
 
 COMMANDS = (
-    *(mesh.mesh, quality.quality, partition.partition, run.run, cases.cases, plot.plot, spectra.spectra),
+    *(mesh.mesh, cull.cull, quality.quality, partition.partition, run.run, cases.cases, plot.plot, spectra.spectra),
     *(reference.reference, compare.compare, bench.bench),
 )
 """In the order of the help."""

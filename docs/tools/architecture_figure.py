@@ -25,7 +25,7 @@ ROOMS = {
     "swe": ("parallel", "equations", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
     "postprocess": ("runs", "reference", "compare", "figures", "studies"),
-    "trisk": ("processes", "report", "arguments", "cli"),
+    "trisk": ("processes", "report", "arguments", "cli", "mesh_cli"),
 }
 """Rooms of each package in the order of imports, the lowest first, as `tests/test_architecture.py` holds it."""
 

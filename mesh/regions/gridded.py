@@ -5,7 +5,6 @@ from pathlib import Path
 
 import netCDF4
 import numpy as np
-from contourpy import contour_generator
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
@@ -56,24 +55,17 @@ def read_gridded(path: Path, name: str) -> Region:
 def _read(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> tuple[Array, Array, Array]:
     """Longitudes (m,) and latitudes (n,) in degrees, ascending, and values (n, m), positive in the region."""
     latitude, longitude = read_coordinates(file, variable, path)
-    rows, columns = latitude.dimensions, longitude.dimensions
-    sizes = dict(zip(variable.dimensions, variable.shape, strict=True))
-    more = [name for name, size in sizes.items() if size > 1 and name not in (*rows, *columns)]
-    if len(rows) != 1 or len(columns) != 1 or rows == columns or more:
+    grid = (*latitude.dimensions, *longitude.dimensions)
+    kept = [name for name, size in zip(variable.dimensions, variable.shape, strict=True) if size > 1 or name in grid]
+    if len(grid) != 2 or sorted(kept) != sorted(grid):
         raise MeshError(
             f"{path}: {variable.name} has the dimensions {variable.dimensions}; give it one of latitude and one of "
             "longitude"
         )
-    values = read_numbers(variable, path).squeeze(
-        tuple(i for i, n in enumerate(variable.dimensions) if n in more or n not in (*rows, *columns))
-    )
-    if variable.dimensions.index(rows[0]) > variable.dimensions.index(columns[0]):
-        values = values.T
-    if values.min() >= 0.0 and values.max() <= 1.0:
-        values = values - 0.5
-    if getattr(variable, "standard_name", "") in LAND_MASKS:
-        values = -values
+    values = read_numbers(variable, path).reshape([len(file.dimensions[name]) for name in kept])
+    values = _positive_within(values if tuple(kept) == grid else values.T, variable)
     north, row = np.unique(np.degrees(latitude.values), return_index=True)
+    # Both ends of a full circle are one meridian.
     east, column = np.unique(np.round(np.degrees(longitude.values), 9) % TURN, return_index=True)
     if min(len(north), len(east)) < 2:
         raise MeshError(
@@ -82,28 +74,39 @@ def _read(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> tupl
     return east, north, values[np.ix_(row, column)]
 
 
+def _positive_within(values: Array, variable: netCDF4.Variable) -> Array:
+    """The values, less a half where they are those of a mask, and turned round where that is one on land."""
+    if values.min() >= 0.0 and values.max() <= 1.0:
+        values = values - 0.5
+    return -values if getattr(variable, "standard_name", "") in LAND_MASKS else values
+
+
 def _with_border(longitude: Array, latitude: Array, values: Array) -> tuple[Array, Array, Array]:
     """The grid with a column that closes the circle, and rows at the poles, or else a border of land."""
+    land = -np.abs(values).max()
     gaps = np.diff(longitude, append=longitude[0] + TURN)
-    first = (int(gaps.argmax()) + 1) % len(gaps)
+    widest = int(gaps.argmax())
+    first = (widest + 1) % len(gaps)  # the columns begin after the gap
     longitude = np.concatenate([longitude[first:], longitude[:first] + TURN])
-    values, rest = np.roll(values, -first, axis=1), np.delete(gaps, gaps.argmax())
-    if gaps.max() <= WIDEST_GAP * rest.max():
+    values = np.roll(values, -first, axis=1)
+    if gaps[widest] <= WIDEST_GAP * np.delete(gaps, widest).max():
         longitude, values = np.append(longitude, longitude[0] + TURN), np.hstack([values, values[:, :1]])
     else:
         longitude = np.concatenate([[longitude[0] - BORDER], longitude, [longitude[-1] + BORDER]])
-        values = np.pad(values, ((0, 0), (1, 1)), constant_values=-np.abs(values).max())
-    step, land = np.diff(latitude).max(), np.full((1, values.shape[1]), -np.abs(values).max())
-    for end, pole in ((0, -POLE), (-1, POLE)):
-        gap = abs(pole - latitude[end])
-        if gap == 0.0:
-            continue
-        reaches = gap <= WIDEST_GAP * step
-        row = np.full_like(land, values[end].mean()) if reaches else land
-        place = pole if reaches else latitude[end] + np.sign(pole) * BORDER
-        at = 0 if end == 0 else len(latitude)
-        latitude, values = np.insert(latitude, at, place), np.insert(values, at, row, axis=0)
-    return longitude, latitude, values
+        values = np.pad(values, ((0, 0), (1, 1)), constant_values=land)
+    gap = WIDEST_GAP * np.diff(latitude).max()
+    ends = [_end(latitude[end], pole, values[end], gap, land) for end, pole in ((0, -POLE), (-1, POLE))]
+    (south, below), (north, above) = ends
+    return longitude, np.concatenate([south, latitude, north]), np.concatenate([below, values, above])
+
+
+def _end(latitude: float, pole: float, row: Array, gap: float, land: float) -> tuple[Array, Array]:
+    """The latitude, and the row of values, to be added beyond the last row (m,), at a pole that is near; or none."""
+    if latitude == pole:
+        return np.empty(0), np.empty((0, len(row)))
+    if abs(pole - latitude) <= gap:
+        return np.array([pole]), np.full((1, len(row)), row.mean())
+    return np.array([latitude + np.sign(pole) * BORDER]), np.full((1, len(row)), land)
 
 
 def _interpolation(longitude: Array, latitude: Array, values: Array) -> Callable[[Array], Array]:
@@ -124,6 +127,9 @@ def _signed_distance(
     longitude: Array, latitude: Array, values: Array, field: Callable[[Array], Array]
 ) -> Callable[[Array], Array]:
     """The distance to the line where the values are zero, positive where the field is."""
+    # Loading it takes a tenth of a second, and only regions from such files need it.
+    from contourpy import contour_generator
+
     lines = contour_generator(x=longitude, y=latitude, z=values).lines(0.0)
     outline = joined([straight_on_the_map(*np.radians(np.asarray(line)).T) for line in lines])
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Array, Index, sum_by_index
 from mesh.geometry.sphere import arc_length, normalize, triangle_area
 
 CORNERS = np.concatenate([np.eye(3), -np.eye(3)])
@@ -144,8 +144,7 @@ def _seas(found: _Triangles, positive: NDArray[np.bool_]) -> tuple[Index, Array]
     graph = coo_array((np.ones(len(sides), bool), (sides[:, 0], sides[:, 1])), shape=(size, size))
     count, sea_of = connected_components(graph, directed=False)
     third = np.abs(triangle_area(*(found.points[corner] for corner in triangles.T))) / 3.0
-    areas = np.bincount(sea_of[triangles].ravel(), np.repeat(third, 3), count)
-    return sea_of.astype(np.intp), areas
+    return sea_of.astype(np.intp), sum_by_index(sea_of[triangles], np.repeat(third[:, None], 3, axis=1), count)
 
 
 def _crossings(triangles: Index, positive: NDArray[np.bool_]) -> tuple[Index, Index]:

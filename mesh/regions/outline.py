@@ -10,6 +10,9 @@ from mesh.geometry.sphere import arc_length, dot, from_lonlat, normalize
 LONGEST_ARC = np.radians(0.1)
 """Radians; lines that are straight in longitude and latitude are divided into arcs no longer than this."""
 
+SAME = 1e-12
+"""Radians; ends closer than this, as they are at a pole, make no arc."""
+
 NEAREST = 4
 """Arcs, by their midpoints, among which the nearest is sought."""
 
@@ -51,7 +54,7 @@ def straight_on_the_map(longitude: Array, latitude: Array) -> tuple[Array, Array
     knots = np.arange(len(longitude))
     vertices = from_lonlat(np.interp(places, knots, longitude), np.interp(places, knots, latitude))
     starts, ends = vertices[:-1], vertices[1:]
-    long = arc_length(starts, ends) > 0.0
+    long = arc_length(starts, ends) > SAME
     return starts[long], ends[long]
 
 

@@ -35,10 +35,10 @@ def read_polygons(path: Path) -> Region:
         raise MeshError(f"{path}: {error.strerror}; give a GeoJSON file with a polygon") from error
     except ValueError as error:
         raise MeshError(f"{path}: is not GeoJSON ({error}); give a file with a polygon") from error
-    found = [rings for part in _geometries(content, path) for rings in part]
-    if not found:
+    polygons = [[_positions(ring, path) for ring in rings] for rings in _polygons(content, path)]
+    if not polygons:
         raise MeshError(f"{path}: holds no polygon; give a GeoJSON file with a Polygon or a MultiPolygon")
-    return polygon_region([[_positions(ring, path) for ring in rings] for rings in found], str(path))
+    return polygon_region(polygons, str(path))
 
 
 def polygon_region(polygons: list[list[Array]], name: str) -> Region:
@@ -104,18 +104,20 @@ def _without_jumps(ring: Array, name: str) -> Array:
     return ring + np.stack([TURN * turns, np.zeros(len(ring))], axis=1)
 
 
-def _geometries(content: Any, path: Path) -> list[list[Any]]:
-    """The coordinates of the polygons in an object of GeoJSON, those of each geometry together."""
+def _polygons(content: Any, path: Path) -> list[list[Any]]:
+    """The rings of each polygon in an object of GeoJSON."""
     kind = content.get("type") if isinstance(content, dict) else None
     if kind in HOLDERS:
         held = content.get(HOLDERS[kind])
         parts = held if isinstance(held, list) else [] if held is None else [held]
-        return [found for part in parts for found in _geometries(part, path)]
-    if kind == "Polygon":
-        return [[content.get("coordinates")]]
-    if kind == "MultiPolygon" and isinstance(content.get("coordinates"), list):
-        return [content["coordinates"]]
-    raise MeshError(f"{path}: holds {_named(kind)}; give a Polygon or a MultiPolygon, or features of these")
+        return [rings for part in parts for rings in _polygons(part, path)]
+    if kind not in ("Polygon", "MultiPolygon"):
+        raise MeshError(f"{path}: holds {_named(kind)}; give a Polygon or a MultiPolygon, or features of these")
+    coordinates = content.get("coordinates")
+    polygons = [coordinates] if kind == "Polygon" else coordinates
+    if not (isinstance(polygons, list) and all(isinstance(rings, list) and rings for rings in polygons)):
+        raise MeshError(f"{path}: a {kind} has no list of rings as its coordinates; give it one")
+    return polygons
 
 
 def _named(kind: Any) -> str:

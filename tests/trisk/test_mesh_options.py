@@ -13,8 +13,8 @@ from typer.testing import CliRunner
 from mesh.errors import MeshError
 from mesh.generation.scvt import default_tolerance
 from mesh.mesh_request import MeshRequest
-from trisk.cli.mesh import mesh
 from trisk.main import app
+from trisk.mesh_cli.mesh import mesh
 
 
 def test_every_field_is_an_option_with_its_default() -> None:

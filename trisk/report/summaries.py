@@ -4,6 +4,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import typer
 from rich.console import Console
 from rich.table import Table
@@ -11,6 +12,7 @@ from rich.table import Table
 from mesh import VoronoiMesh
 from mesh.discrete.quality import quality_and_note
 from mesh.generation.well_centered import WellCentered
+from mesh.parts.sea_cells import SeaCells
 from swe.output.files import DIAGNOSTICS_FILE, load_record, read_series
 
 
@@ -38,6 +40,14 @@ def tell_of_centring(centring: WellCentered) -> None:
     typer.echo(
         f"well-centred: the least triangle quality is {centring.least_quality:.3f}, and the residual rose from "
         f"{centring.residual_before:.1e} to {centring.residual:.1e} mean spacings"
+    )
+
+
+def tell_of_sea(sea: SeaCells) -> None:
+    """Print, in a line, how many cells of a mesh a sea has and what was left out of its region."""
+    typer.echo(
+        f"kept {np.count_nonzero(sea.kept)} of {sea.kept.size} cells; left out of the region {sea.channel_cells} "
+        f"cells of channels, and {sea.lakes} lakes of {sea.lake_cells} cells"
     )
 
 
