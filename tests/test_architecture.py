@@ -23,6 +23,7 @@ ROOMS = {
         "parts",
         "partition",
         "generation",
+        "coast",
         "files",
     ],
     "swe": ["", "parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"],

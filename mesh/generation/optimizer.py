@@ -23,7 +23,7 @@ from mesh.geometry.sphere import mean_spacing
 from mesh.integrals.moments import evaluate, number_of_blocks
 from mesh.integrals.weighted_moments import WeightedCells
 from mesh.mesh_request import MeshRequest
-from mesh.triangulation.moving import Triangulation
+from mesh.triangulation.moving import MovingCells, Triangulation
 
 PAIRS = 7
 """Pairs that L-BFGS remembers."""
@@ -158,7 +158,9 @@ class Optimizer:
 
     `method` is `lbfgs` or `lloyd`, which is the same loop without a memory and without coarse grids. `triangles` may
     give a valid triangulation of the points. `density` is that of the mass, uniform if None; `fixed` (n,) marks
-    generators that stay where they are. Results do not depend on the number of threads.
+    generators that stay where they are. `cells` may give their cells, where these are not a triangulation of the sphere,
+    and their mean `spacing` (radians); coarse grids, which cover the whole sphere, only cost iterations there. Results
+    do not depend on the number of threads.
     """
 
     def __init__(
@@ -168,16 +170,19 @@ class Optimizer:
         method: str = MeshRequest.method,
         density: Density | None = None,
         fixed: NDArray[np.bool_] | None = None,
+        cells: MovingCells | None = None,
+        spacing: float | None = None,
     ) -> None:
         if method not in ("lbfgs", "lloyd"):
             raise MeshError(f"there is no optimisation method named '{method}'; choose lbfgs or lloyd")
         quasi_newton = method == "lbfgs"
-        self._spacing = mean_spacing(len(points))
-        self._triangulation = Triangulation(points, triangles)
-        self._preconditioner = MultilevelPreconditioner(points, GAIN) if quasi_newton else None
+        self._spacing = mean_spacing(len(points)) if spacing is None else spacing
+        self._triangulation = Triangulation(points, triangles) if cells is None else cells
+        coarse_grids = quasi_newton and cells is None
+        self._preconditioner = MultilevelPreconditioner(points, GAIN) if coarse_grids else None
         self._memory = PairMemory(PAIRS if quasi_newton else 0, len(points))
-        self._current = _State(points, quasi_newton)
-        self._trial = _State(points, quasi_newton)
+        self._current = _State(points, coarse_grids)
+        self._trial = _State(points, coarse_grids)
         n_blocks = number_of_blocks(len(points))
         self._pair_partials = np.empty((n_blocks, 2 * (PAIRS + 1) + 1))
         self._cell_partials = np.empty((n_blocks, 3))

@@ -1,5 +1,7 @@
 """A Delaunay triangulation that follows its moving points: flips where they do, a convex hull where they do not."""
 
+from typing import Protocol
+
 import numpy as np
 
 from mesh.arrays import Array, Index
@@ -14,6 +16,21 @@ UNTANGLING_ROUNDS = 4
 
 FOLLOWING_FRACTIONS = np.arange(8) / 8
 """Parts of a move at which the triangulation is repaired where it cannot follow the move as a whole."""
+
+
+class MovingCells(Protocol):
+    """Cells of moving points, bounded by places on the sphere, as `Triangulation` has them."""
+
+    circumcenters: Array
+    rings: Index
+    ring_starts: Index
+
+    @property
+    def triangles(self) -> Index:
+        """Delaunay triangles (m, 3)."""
+
+    def update(self, points: Array, previous: Array | None = None) -> None:
+        """Make the cells those of `points` (n, 3), which come from the `previous` ones if these are given."""
 
 
 class Triangulation:
@@ -57,7 +74,7 @@ class Triangulation:
 
     def _connect(self, triangles: Index, n_points: int) -> None:
         """Set the triangles and what follows from them, apart from positions."""
-        self.triangles = np.array(triangles, dtype=np.int32, order="C")
+        self.triangles: Index = np.array(triangles, dtype=np.int32, order="C")
         self.twins = build_twins(self.triangles, n_points)
         self._first_corner, self._degrees = first_corners(self.triangles, n_points)
         self._fill_rings()

@@ -1,0 +1,104 @@
+"""Corners and sides of clipped cells: what of their rings a mesh keeps.
+
+Corners are circumcentres and crossings of the coast; the points of the coast between two crossings are no corners, so
+that a cell's portion of the coast is one side.
+"""
+
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+
+from mesh.arrays import Index
+from mesh.coast.crossings import neighbour_across
+from mesh.coast.sea_cells import SeaCells
+from mesh.errors import MeshError
+
+COAST = -1
+"""In the place of a neighbour: the side is a portion of the coast."""
+
+FEWEST_SIDES = 3
+
+
+@dataclass(frozen=True, eq=False)
+class Corners:
+    """Those of cell i are rows `starts[i]` to `starts[i + 1] - 1`, counter-clockwise.
+
+    `places` (n_corners,) are rows of `SeaCells.circumcenters`; `neighbours` (n_corners,) are the cells across the sides
+    from each corner to the next, `COAST` for the coast; `cells` (n_corners,) are the cells themselves.
+    """
+
+    starts: Index
+    places: Index
+    neighbours: Index
+    cells: Index
+
+
+def corners_of(sea: SeaCells) -> Corners:
+    """The corners of all cells.
+
+    Raises `MeshError` where a cell is in several parts or encloses an island, where two cells meet along several
+    sides, where one has too few sides, or where the sea lies nearer to a filler than to any generator.
+    """
+    number = int(np.argmax(sea.loops > 1))
+    if sea.loops[number] > 1:
+        raise _too_coarse(f"cell {number} is in several parts or goes round an island")
+    starts = np.empty(sea.n_cells + 1, np.int32)
+    places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
+    crossings = sea.crossing_cells, sea.n_triangles, sea.n_triangles + sea.n_coast
+    count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
+    sizes = np.diff(starts)
+    corners = Corners(
+        starts, places[:count], neighbours[:count], np.repeat(np.arange(sea.n_cells, dtype=np.int32), sizes)
+    )
+    if max(corners.neighbours.max(), sea.crossing_cells.max(initial=0)) >= sea.n_cells:
+        raise _too_coarse("some sea lies farther from all generators than from points on land")
+    if sizes.min() < FEWEST_SIDES:
+        raise _too_coarse(f"cell {np.argmin(sizes)} has {sizes.min()} sides")
+    _require_one_side_each(corners, sea.n_cells)
+    return corners
+
+
+@numba.njit(cache=True)
+def _fill_corners(
+    ring_starts: Index,
+    rings: Index,
+    triangles: Index,
+    crossing_cells: Index,
+    n_triangles: int,
+    after_coast: int,
+    starts: Index,
+    places: Index,
+    neighbours: Index,
+) -> int:
+    """Write the corners of all cells as `Corners` has them; give how many there are."""
+    count = 0
+    for cell in range(len(ring_starts) - 1):
+        starts[cell] = count
+        for slot in range(ring_starts[cell], ring_starts[cell + 1]):
+            place = rings[slot]
+            if place < n_triangles:
+                neighbours[count] = neighbour_across(triangles, place, cell)
+            elif place < after_coast:
+                continue
+            else:
+                left, entered = crossing_cells[place - after_coast]
+                neighbours[count] = COAST if entered == cell else entered
+            places[count] = place
+            count += 1
+    starts[-1] = count
+    return count
+
+
+def _require_one_side_each(corners: Corners, n_cells: int) -> None:
+    """Raise `MeshError` where a cell meets a neighbour along several sides."""
+    inner = corners.neighbours != COAST
+    pairs = corners.cells[inner].astype(np.int64) * n_cells + corners.neighbours[inner]
+    found, counts = np.unique(pairs, return_counts=True)
+    if counts.max() > 1:
+        cell, other = divmod(int(found[np.argmax(counts)]), n_cells)
+        raise _too_coarse(f"cells {cell} and {other} meet on both sides of some land")
+
+
+def _too_coarse(what: str) -> MeshError:
+    return MeshError(f"{what}: ask for more cells, or for a smoother coast")

@@ -1,0 +1,102 @@
+"""From the description of a mesh and a region to a mesh whose cells the coast of the region clips."""
+
+import time
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.coast.coastline import Coastline
+from mesh.coast.sea_cells import SeaCells
+from mesh.coast.sea_mesh import sea_mesh
+from mesh.coast.start import fillers, sea_spacing, starting_points
+from mesh.density.named import Density, uniform
+from mesh.errors import MeshError
+from mesh.generation.optimizer import Callback, Limits, Optimizer, ScvtResult
+from mesh.generation.scvt import VARIABLE_TOLERANCE, cells_of, check_converged, density_of, limits_of
+from mesh.geometry.sphere import fibonacci_points
+from mesh.mesh_request import MeshRequest
+from mesh.regions.region import Region
+from mesh.voronoi_mesh import VoronoiMesh
+
+SAMPLES = 200_000
+"""Points on the sphere that tell, before there is a coastline, how large the sea is."""
+
+METHODS = ("lbfgs", "lloyd")
+
+COAST_SPACINGS = 1.5
+"""Width, in mean spacings, to which the coast is smoothed: bays as narrow as one spacing end in cells of two sides."""
+
+
+@dataclass(frozen=True, eq=False)
+class SeaResult:
+    """Converged generators, and their clipped cells."""
+
+    result: ScvtResult
+    sea: SeaCells
+
+
+def region_mesh(region: Region, request: MeshRequest, callback: Callback | None = None) -> VoronoiMesh:
+    """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
+
+    The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci` by default, and
+    `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by default), iterations,
+    seconds and seed. Raises `MeshError` if no such mesh can be made.
+    """
+    require_possible_with_coast(request)
+    begin, density = time.perf_counter(), density_of(request)
+    limits = coast_limits(request)
+    spacing = spacing_before_coastline(region, cells_of(request))
+    coastline = Coastline(region.coastline(COAST_SPACINGS * spacing))
+    points = starting_points(coastline, cells_of(request), density, _start_of(request, density), request.seed)
+    found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
+    check_converged(found.result, limits)
+    return sea_mesh(found.sea, found.result.points, density)
+
+
+def require_possible_with_coast(request: MeshRequest) -> None:
+    """Raise `MeshError` if the request asks for what a mesh with a coast cannot have."""
+    if request.nested is not None or request.well_centered:
+        raise MeshError("a mesh with a coast is neither nested nor made well-centred; leave these options out")
+    if request.method not in METHODS:
+        raise MeshError(f"a mesh with a coast cannot use the method {request.method}; choose {' or '.join(METHODS)}")
+
+
+def coast_limits(request: MeshRequest) -> Limits:
+    """Limits of the requested optimisation, by default with the tolerance of other densities than the uniform one."""
+    tolerance = VARIABLE_TOLERANCE if request.tolerance is None else request.tolerance
+    return replace(limits_of(request), tolerance=tolerance)
+
+
+def spacing_before_coastline(region: Region, cells: int) -> float:
+    """Distance (radians) between neighbours if `cells` filled the region, whose coast may still have to be smoothed."""
+    part = np.count_nonzero(region.contains(fibonacci_points(SAMPLES))) / SAMPLES
+    if part == 0.0:
+        raise MeshError(f"{region.name}: there is no sea, or hardly any; take another region")
+    return float(np.sqrt(8.0 * np.pi * part / (np.sqrt(3.0) * cells)))
+
+
+def converge_at_sea(
+    coastline: Coastline,
+    points: Array,
+    method: str = MeshRequest.method,
+    density: Density = uniform,
+    limits: Limits | None = None,
+    callback: Callback | None = None,
+) -> SeaResult:
+    """Move generators `points` (n, 3) in the sea to the centroids of their clipped cells.
+
+    Raises `MeshError` for an unknown method, or where points cannot be triangulated or the density cannot be used.
+    """
+    limits = Limits(tolerance=VARIABLE_TOLERANCE) if limits is None else limits
+    spacing = sea_spacing(coastline, len(points))
+    sea = SeaCells(points, coastline, fillers(coastline, spacing))
+    weight = None if density is uniform else density
+    optimizer = Optimizer(points, method=method, density=weight, cells=sea, spacing=spacing)
+    return SeaResult(optimizer.run(limits, callback), sea)
+
+
+def _start_of(request: MeshRequest, density: Density) -> str:
+    if request.start is not None:
+        return request.start
+    return "fibonacci" if density is uniform else "random-root"

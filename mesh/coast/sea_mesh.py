@@ -1,0 +1,73 @@
+"""The mesh of clipped cells: the coast itself is its wall."""
+
+import numpy as np
+
+from mesh.arrays import Array
+from mesh.coast.portions import Portions, portions_of
+from mesh.coast.sea_cells import SeaCells
+from mesh.coast.sea_topology import sea_topology
+from mesh.density.named import Density, density_at, uniform
+from mesh.density.record import name_of, source_of
+from mesh.discrete.metrics import AtWalls, compute_metrics
+from mesh.discrete.validate import validate_mesh
+from mesh.errors import MeshError
+from mesh.geometry.sphere import arc_length, normalize, triangle_area
+from mesh.validated import remember_validated
+from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Topology, VoronoiMesh
+
+
+def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> VoronoiMesh:
+    """The validated mesh, on the unit sphere, of the clipped cells of `generators` (n_cells, 3), where `sea` has them.
+
+    A cell's portion of the coast is one edge without a second cell. Its point is that of the coast which is nearest to
+    the generator, its `dc_edge` twice the distance to there, as if another generator stood as far behind the coast, and
+    its `dv_edge` the arc between its ends. Areas of cells are those of the clipped cells, with all bends of the coast.
+    Raises `MeshError` where a generator stands on land, or where cells and coast are too intricate for such a mesh.
+    """
+    on_land = np.flatnonzero(~sea.coastline.contains(generators))
+    if len(on_land):
+        raise MeshError(f"generator {on_land[0]} stands on land: ask for more cells, or for a smoother coast")
+    topology, places = sea_topology(sea)
+    at_walls = _at_walls(sea, generators, topology, portions_of(sea, generators), places)
+    metrics = compute_metrics(generators, topology, at_walls)
+    mesh = VoronoiMesh(
+        **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
+        **{name: getattr(metrics, name) for name in METRICS_NAMES},
+        mesh_density=density_at(density, generators),
+        sphere_radius=1.0,
+        density_name=name_of(density),
+        density_source=source_of(density),
+    )
+    validate_mesh(mesh, fresh_metrics=True)
+    remember_validated(mesh)
+    return mesh
+
+
+def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Array) -> AtWalls:
+    """What the coast adds to the metrics: its vertices, the points of its edges, and kites beside them."""
+    vertices = sea.circumcenters[places]
+    portion = places - sea.n_triangles - sea.n_coast
+    walls = np.flatnonzero(topology.cells_on_edge[:, 1] < 0)
+    of_wall = portion[topology.vertices_on_edge[walls, 0]]
+    edges = np.zeros((topology.n_edges, 3))
+    edges[walls] = portions.points[of_wall]
+    dc_edge = np.zeros(topology.n_edges)
+    dc_edge[walls] = 2.0 * arc_length(generators[topology.cells_on_edge[walls, 0]], edges[walls])
+    return AtWalls(vertices, edges, dc_edge, _kites(generators, topology, vertices, portion, portions))
+
+
+def _kites(generators: Array, topology: Topology, vertices: Array, portion: Array, portions: Portions) -> Array:
+    """Areas (n_vertices, 3) at the vertices on the coast: of the cell that it enters there, and the one that it leaves.
+
+    Each has the triangle of its generator, the vertex and the point of the edge between the two, and its area on this
+    side of the point on the coast.
+    """
+    kites = np.zeros((topology.n_vertices, 3))
+    rows = np.flatnonzero(portion >= 0)
+    arriving = np.empty(len(portions.areas), np.int64)
+    arriving[portions.next_crossing] = np.arange(len(portions.areas))
+    entered, left = (generators[topology.cells_on_vertex[rows, k]] for k in range(2))
+    corner, middle = vertices[rows], normalize(entered + left)
+    kites[rows, 0] = triangle_area(entered, middle, corner) + portions.areas[portion[rows], 0]
+    kites[rows, 1] = triangle_area(left, corner, middle) + portions.areas[arriving[portion[rows]], 1]
+    return kites
