@@ -1,15 +1,18 @@
 """Rounds of running a case and making a mesh for what the run shows."""
 
 import json
-from collections.abc import Callable
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from mesh.coast.generation import region_mesh
+from mesh.errors import MeshWarning
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.pipeline import generate_mesh
 from mesh.mesh_request import MeshRequest
 from mesh.plain import recorded
+from mesh.regions.find import find_region
 from mesh.safe_files import written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.adaptation.carried import Continued, carried_over
@@ -29,16 +32,14 @@ SNAPSHOTS = 20
 MESH_TOLERANCE = 1e-4
 """Residual, in mean spacings, at which an adapted mesh is taken: the field that it follows is known less well."""
 
-MeshMaker = Callable[[MeshRequest], VoronoiMesh]
-"""Makes the mesh of a request, on the unit sphere."""
-
 
 @dataclass(frozen=True)
 class Plan:
     """`case` run for `days` on a uniform mesh of `cells` cells, then on each of `rounds` meshes that follow it.
 
     Each round goes on from the state that the one before has reached, or, with `begin_again`, from the start of the
-    case. A uniform mesh of `fine` cells, run for as long, is what all are measured against. Everything is in `folder`.
+    case. A uniform mesh of `fine` cells, run for as long, is what all are measured against. Meshes cover the sphere, or
+    with a `coast` (`mesh.regions.find`) the sea within it. Everything is in `folder`.
     """
 
     folder: Path
@@ -48,6 +49,7 @@ class Plan:
     days: float
     rounds: int
     begin_again: bool = False
+    coast: str | None = None
     scheme: SchemeName = Options.scheme
 
     def __post_init__(self) -> None:
@@ -92,18 +94,13 @@ class Adaptation:
     fine: Run
 
 
-def global_mesh(request: MeshRequest) -> VoronoiMesh:
-    """The mesh of a request on the whole sphere."""
-    return generate_mesh(request).mesh
-
-
-def adapt(plan: Plan, progress: bool, tell: Tell, make: MeshMaker = global_mesh) -> Adaptation:
+def adapt(plan: Plan, progress: bool, tell: Tell) -> Adaptation:
     """Carry out a plan; what the folder holds already is taken from there, and a run that was broken off goes on.
 
     Raises `InputError` or `MeshError` where a mesh or a run cannot be made, `RunError` where a run fails.
     """
     _require_same_plan(plan)
-    runner = _Runner(plan, progress, tell, make)
+    runner = _Runner(plan, progress, tell)
     rounds = [Round(0, 0.0, runner.uniform("round-0", plan.cells, plan.days))]
     while len(rounds) <= plan.rounds:
         rounds.append(runner.following(rounds[-1]))
@@ -130,8 +127,9 @@ def _require_same_plan(plan: Plan) -> None:
 class _Runner:
     """Makes meshes and runs of a plan, or finds them."""
 
-    def __init__(self, plan: Plan, progress: bool, tell: Tell, make: MeshMaker) -> None:
-        self._plan, self._progress, self._tell, self._make = plan, progress, tell, make
+    def __init__(self, plan: Plan, progress: bool, tell: Tell) -> None:
+        self._plan, self._progress, self._tell = plan, progress, tell
+        self._region = None if plan.coast is None else find_region(plan.coast)
 
     def uniform(self, name: str, cells: int, days: float) -> Run:
         """The case from its start on a uniform mesh."""
@@ -160,8 +158,16 @@ class _Runner:
         path = self._plan.folder / name
         if not path.exists():
             self._tell(f"{name}: {request.cells} cells")
-            write_mesh(self._make(request), path)
+            write_mesh(self._made(request), path)
         return read_mesh(path)
+
+    def _made(self, request: MeshRequest) -> VoronoiMesh:
+        if self._region is None:
+            return generate_mesh(request).mesh
+        with warnings.catch_warnings():
+            # The energy is that of the sea; nothing is asked for on land.
+            warnings.filterwarnings("ignore", ".*covers a part of the globe", MeshWarning)
+            return region_mesh(self._region, request)
 
     def _run(self, name: str, case: Case, mesh: VoronoiMesh, days: float) -> Run:
         """The run of this name, made unless it is there already."""

@@ -30,6 +30,10 @@ def adapt(
         bool,
         typer.Option("--begin-again", help="Begin each round at the start of the case, not where the last one ended."),
     ] = False,
+    coast: Annotated[
+        str | None,
+        typer.Option("--coast", metavar="REGION", help="Fill the sea of this region up to its coast; see trisk mesh."),
+    ] = None,
     scheme: Scheme = "ringler2010",
     settings: Settings = None,
     quiet: Quiet = False,
@@ -52,6 +56,6 @@ def adapt(
         if not quiet:
             typer.echo(line)
 
-    plan = Plan(output, chosen, cells, fine, days, rounds, begin_again, scheme)
+    plan = Plan(output, chosen, cells, fine, days, rounds, begin_again, coast, scheme)
     made = adapt(plan, not quiet, tell)
     tell(str(write_adaptation(plan, made, ["trisk", *sys.argv[1:]])))
