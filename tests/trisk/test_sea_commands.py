@@ -78,6 +78,7 @@ def test_run_and_figures(trisk: Call, sea_file: Path, sea: VoronoiMesh, tmp_path
     assert (tmp_path / "flow" / "figures" / "potential_vorticity.png").stat().st_size > 10_000
 
 
+@pytest.mark.filterwarnings("ignore::mesh.MeshWarning")
 def test_a_file_of_the_communitys_culler_runs_like_ours(
     trisk: Call, sea_file: Path, icosahedral_mesh: VoronoiMesh, tmp_path: Path
 ) -> None:
