@@ -8,6 +8,7 @@ os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 import mesh.compiled_cache
 import mesh.forks  # noqa: F401
+from mesh.coast.generation import region_mesh
 from mesh.discrete.build import mesh_from_points
 from mesh.discrete.operators import Operators, build_operators, normal_component
 from mesh.discrete.quality import Quality, mesh_quality
@@ -15,6 +16,7 @@ from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError, MeshWarning
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.pipeline import scvt_mesh
+from mesh.mesh_request import MeshRequest
 from mesh.partition.partition import Partition, partition_mesh
 from mesh.parts.sea_cells import cull_mesh
 from mesh.regions.find import find_region
@@ -23,6 +25,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 
 __all__ = [
     "MeshError",
+    "MeshRequest",
     "MeshWarning",
     "Operators",
     "Partition",
@@ -37,6 +40,7 @@ __all__ = [
     "normal_component",
     "partition_mesh",
     "read_mesh",
+    "region_mesh",
     "scvt_mesh",
     "validate_mesh",
     "write_mesh",

@@ -5,9 +5,9 @@ from typing import Any
 
 _PLACES = {
     "mesh": (
-        *("MeshError", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
+        *("MeshError", "MeshRequest", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
         *("build_operators", "cull_mesh", "find_region", "mesh_from_points", "mesh_quality", "normal_component"),
-        *("partition_mesh", "read_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *("partition_mesh", "read_mesh", "region_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
     ),
     "swe": (
         *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),

@@ -82,7 +82,7 @@ def _fill_corners(
             elif place < after_coast:
                 continue
             else:
-                left, entered = crossing_cells[place - after_coast]
+                entered = crossing_cells[place - after_coast, 1]
                 neighbours[count] = COAST if entered == cell else entered
             places[count] = place
             count += 1

@@ -39,9 +39,9 @@ class SeaResult:
 def region_mesh(region: Region, request: MeshRequest, callback: Callback | None = None) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
 
-    The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci` by default, and
-    `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by default), iterations,
-    seconds and seed. Raises `MeshError` if no such mesh can be made.
+    The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci`
+    by default, and `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by
+    default), iterations, seconds and seed. Raises `MeshError` if no such mesh can be made.
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)

@@ -33,7 +33,7 @@ class SeaCells:
         self._hints = np.zeros(n_rings, np.int32)
         self._ring_of_arc = np.repeat(np.arange(n_rings, dtype=np.int32), np.diff(coastline.ring_starts))
         self._crossing_starts = np.zeros(n_rings + 1, np.int32)
-        self.ring_starts = np.empty(len(points) + 1, np.int32)
+        self.ring_starts: Index = np.empty(len(points) + 1, np.int32)
         self.loops = np.empty(len(points), np.int32)
         self._first_portion = np.empty(len(self._all_points), np.int32)
         self._make_room(len(coastline.points))
@@ -75,15 +75,15 @@ class SeaCells:
         self._next_portion = np.empty(crossings + n_rings, np.int32)
         # Every portion adds its two ends; where a cell has several lines round it, each returns to two places.
         longest = len(self._triangulation.rings) + self.n_coast + 5 * (crossings + n_rings)
-        self.rings = np.empty(longest, np.int32)
+        self.rings: Index = np.empty(longest, np.int32)
 
     def _clip(self) -> None:
         whole, coastline = self._triangulation, self._coastline
         cells = self._all_points, whole.triangles, whole.ring_starts, whole.rings
         coast = coastline.points, coastline.ring_starts
         while True:
-            crossings = self._crossings, self._arcs, self._cells
-            self.n_crossings = follow_coast(*cells, *coast, self._hints, self._crossing_starts, *crossings)
+            starts, arcs = self._crossing_starts, self._arcs
+            self.n_crossings = follow_coast(*cells, *coast, self._hints, starts, self._crossings, arcs, self._cells)
             if self.n_crossings >= 0:
                 break
             self._make_room(2 * len(self._crossings))

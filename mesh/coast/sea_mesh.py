@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from mesh.arrays import Array
+from mesh.arrays import Array, Index
 from mesh.coast.portions import Portions, portions_of
 from mesh.coast.sea_cells import SeaCells
 from mesh.coast.sea_topology import sea_topology
@@ -43,7 +43,7 @@ def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> Vo
     return mesh
 
 
-def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Array) -> AtWalls:
+def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Index) -> AtWalls:
     """What the coast adds to the metrics: its vertices, the points of its edges, and kites beside them."""
     vertices = sea.circumcenters[places]
     portion = places - sea.n_triangles - sea.n_coast
@@ -56,7 +56,7 @@ def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Po
     return AtWalls(vertices, edges, dc_edge, _kites(generators, topology, vertices, portion, portions))
 
 
-def _kites(generators: Array, topology: Topology, vertices: Array, portion: Array, portions: Portions) -> Array:
+def _kites(generators: Array, topology: Topology, vertices: Array, portion: Index, portions: Portions) -> Array:
     """Areas (n_vertices, 3) at the vertices on the coast: of the cell that it enters there, and the one that it leaves.
 
     Each has the triangle of its generator, the vertex and the point of the edge between the two, and its area on this

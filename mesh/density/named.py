@@ -47,7 +47,7 @@ class RefinedCircle:
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
         shape = (self.latitude, self.longitude, self.radius, self.transition, self.ratio)
-        return by_blocks(lambda rows: _circle_values(rows, *shape), np.ascontiguousarray(points))
+        return by_blocks(lambda rows: _circle_values(_components(rows), *shape), points)
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ class RefinedBox:
     def __call__(self, points: Array) -> Array:
         """Values (m,) at unit vectors (m, 3)."""
         shape = (self.south, self.north, self.west, self.east, self.transition, self.ratio)
-        return by_blocks(lambda rows: _box_values(rows, *shape), np.ascontiguousarray(points))
+        return by_blocks(lambda rows: _box_values(_components(rows), *shape), points)
 
 
 @dataclass(frozen=True)
@@ -136,47 +136,52 @@ def _check(values: Array, points: Array) -> None:
         )
 
 
+def _components(points: Array) -> Array:
+    """Components (3, m) of points (m, 3), each in one row: what loops can load several of."""
+    return np.ascontiguousarray(points.T)
+
+
 @values_loop
 def _circle_values(
-    points: Array, latitude: float, longitude: float, radius: float, transition: float, ratio: float
+    components: Array, latitude: float, longitude: float, radius: float, transition: float, ratio: float
 ) -> Array:
-    """Values (m,) of `RefinedCircle` at unit vectors (m, 3)."""
-    values = np.empty(len(points))
+    """Values (m,) of `RefinedCircle` at unit vectors of such `_components` (3, m)."""
+    x, y, z = components[0], components[1], components[2]
+    values = np.empty(len(x))
     east_x, east_y = np.cos(longitude), np.sin(longitude)
-    for row in range(len(points)):
-        rise = _latitude(points, row) - latitude
-        side = _longitude_from(points, row, east_x, east_y)
+    for row in range(len(x)):
+        rise = _latitude(x[row], y[row], z[row]) - latitude
+        side = _longitude_from(x[row], y[row], east_x, east_y)
         values[row] = _blend(np.sqrt(rise * rise + side * side) - radius, transition, ratio)
     return values
 
 
 @values_loop
 def _box_values(
-    points: Array, south: float, north: float, west: float, east: float, transition: float, ratio: float
+    components: Array, south: float, north: float, west: float, east: float, transition: float, ratio: float
 ) -> Array:
-    """Values (m,) of `RefinedBox` at unit vectors (m, 3)."""
-    values = np.empty(len(points))
+    """Values (m,) of `RefinedBox` at unit vectors of such `_components` (3, m)."""
+    x, y, z = components[0], components[1], components[2]
+    values = np.empty(len(x))
     middle, half_width = 0.5 * (west + east), 0.5 * (east - west)
     east_x, east_y = np.cos(middle), np.sin(middle)
-    for row in range(len(points)):
-        latitude = _latitude(points, row)
+    for row in range(len(x)):
+        latitude = _latitude(x[row], y[row], z[row])
         end = max(south - latitude, latitude - north, 0.0)
-        side = max(abs(_longitude_from(points, row, east_x, east_y)) - half_width, 0.0)
+        side = max(abs(_longitude_from(x[row], y[row], east_x, east_y)) - half_width, 0.0)
         values[row] = _blend(np.sqrt(side * side + end * end), transition, ratio)
     return values
 
 
 @values_loop
-def _latitude(points: Array, row: int) -> float:
-    """Latitude of a point, radians."""
-    x, y, z = points[row, 0], points[row, 1], points[row, 2]
+def _latitude(x: float, y: float, z: float) -> float:
+    """Latitude of a direction, radians."""
     return arctangent(z, np.sqrt(x * x + y * y))
 
 
 @values_loop
-def _longitude_from(points: Array, row: int, east_x: float, east_y: float) -> float:
-    """Longitude of a point, in [-pi, pi], from the meridian through (east_x, east_y, 0)."""
-    x, y = points[row, 0], points[row, 1]
+def _longitude_from(x: float, y: float, east_x: float, east_y: float) -> float:
+    """Longitude of a direction, in [-pi, pi], from the meridian through (east_x, east_y, 0)."""
     return arctangent(y * east_x - x * east_y, x * east_x + y * east_y)
 
 

@@ -8,7 +8,6 @@ may be missed, but with as many patches as here it is narrower than the cells.
 
 import math
 
-import numba
 import numpy as np
 from scipy.spatial import cKDTree
 
@@ -22,8 +21,8 @@ PATCHES_PER_CELL = 4.0
 FEWEST_CELLS = 2500
 """Meshes of fewer cells do without: exact integrals and quadrature differ there by more than round-off."""
 
-EVERYWHERE = 4.0
-"""A chord longer than all."""
+FURTHEST = 32.0
+"""Patches within which the nearest varied one is sought: that is wider than any cell, and quick."""
 
 
 class Plateaus:
@@ -44,12 +43,13 @@ class Plateaus:
         self.reaches = np.zeros(len(centers))
         if varied.all():
             return
-        self.reaches[~varied] = EVERYWHERE
+        width = 2.0 / resolution  # of patches in the middle of a face, the largest
+        nearest = np.full(np.count_nonzero(~varied), FURTHEST * width)
         if varied.any():
-            nearest = cKDTree(centers[varied]).query(centers[~varied], workers=numba.get_num_threads())[0]
-            # Half a diagonal of the patch itself, and half a one of the varied patch; those in the middle of a face,
-            # of side 2 / resolution, are the largest.
-            self.reaches[~varied] = nearest - 2.0 * math.sqrt(2.0) / resolution
+            found = cKDTree(centers[varied]).query(centers[~varied], distance_upper_bound=FURTHEST * width)[0]
+            nearest = np.minimum(nearest, found)
+        # Half a diagonal of the patch itself and half a one of the varied patch.
+        self.reaches[~varied] = nearest - math.sqrt(2.0) * width
 
     @property
     def any(self) -> bool:

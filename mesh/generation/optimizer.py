@@ -158,9 +158,9 @@ class Optimizer:
 
     `method` is `lbfgs` or `lloyd`, which is the same loop without a memory and without coarse grids. `triangles` may
     give a valid triangulation of the points. `density` is that of the mass, uniform if None; `fixed` (n,) marks
-    generators that stay where they are. `cells` may give their cells, where these are not a triangulation of the sphere,
-    and their mean `spacing` (radians); coarse grids, which cover the whole sphere, only cost iterations there. Results
-    do not depend on the number of threads.
+    generators that stay where they are. `cells` may give their cells, where these are not all of the sphere, and their
+    mean `spacing` (radians); coarse grids, which cover the whole sphere, only cost iterations there. Results do not
+    depend on the number of threads.
     """
 
     def __init__(

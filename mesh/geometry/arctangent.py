@@ -13,22 +13,6 @@ RATIO = np.sqrt(2.0) - 1.0
 TINY = 1.0e-300
 """Added to lengths that divide, so that the direction of no length has the angle zero."""
 
-SERIES = (
-    1.0,
-    -0.3333333333333312,
-    0.19999999999940893,
-    -0.14285714279250245,
-    0.11111110744919658,
-    -0.09090896809064027,
-    0.07692045330902225,
-    -0.06662951813629191,
-    0.05846878297330872,
-    -0.05035102456601552,
-    0.03796525745386593,
-    -0.017805397205419446,
-)
-"""Coefficients of arctan(t) / t in powers of t^2, interpolated at twelve Chebyshev points of 0 <= t <= RATIO."""
-
 
 @numba.njit(cache=True, error_model="numpy", fastmath=False)
 def arctangent(y: float, x: float) -> float:
@@ -47,8 +31,10 @@ def arctangent(y: float, x: float) -> float:
 
 @numba.njit(cache=True, error_model="numpy", fastmath=False)
 def _series(square: float) -> float:
-    """The value of arctan(t) / t at t^2."""
-    value = SERIES[11]
-    for power in range(10, -1, -1):
-        value = value * square + SERIES[power]
-    return value
+    """The value of arctan(t) / t at t^2, for t up to RATIO: powers of t^2 through twelve Chebyshev points."""
+    value = 0.03796525745386593 - 0.017805397205419446 * square
+    value = 0.05846878297330872 + square * (square * value - 0.05035102456601552)
+    value = 0.07692045330902225 + square * (square * value - 0.06662951813629191)
+    value = 0.11111110744919658 + square * (square * value - 0.09090896809064027)
+    value = 0.19999999999940893 + square * (square * value - 0.14285714279250245)
+    return 1.0 + square * (square * value - 0.3333333333333312)

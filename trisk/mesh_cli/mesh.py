@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from mesh.generation.checkpoint import CheckpointKeeper
     from mesh.generation.optimizer import Callback
     from mesh.mesh_request import MeshRequest
+    from mesh.voronoi_mesh import VoronoiMesh
 
 
 def _defaults() -> Any:
@@ -36,6 +37,15 @@ def mesh(
     output: Annotated[Path, typer.Option("--output", "-o", help="MPAS mesh file to write.")],
     cells: Annotated[
         int | None, typer.Option("--cells", help="Number of cells; 10*4^k+2 gives an icosahedral mesh.")
+    ] = None,
+    coast: Annotated[
+        str | None,
+        typer.Option(
+            "--coast",
+            metavar="REGION",
+            help="Fill the sea of this region with cells that its coast clips: north-atlantic, world-ocean, a box "
+            "WEST,EAST,SOUTH,NORTH in degrees, polygons FILE.geojson, or a mask or signed distance FILE.nc:VARIABLE.",
+        ),
     ] = None,
     density: Annotated[
         str,
@@ -60,7 +70,7 @@ def mesh(
         typer.Option(
             "--start",
             help="icosahedral, fibonacci, random or random-root; by default the first, or the "
-            "second where the first has no such mesh.",
+            "second where the first has no such mesh; with a coast the second, or the last under a density.",
         ),
     ] = DEFAULTS.start,
     seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,
@@ -79,7 +89,8 @@ def mesh(
         typer.Option(
             "--tolerance",
             help="Largest distance from generator to centroid, in mean spacings; by default 1e-8, 1e-6 under a "
-            "density, and more for methods that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 (macqueen).",
+            "density or with a coast, and more for methods that sample: 0.02 and 0.2 (probabilistic), 0.1 and 0.5 "
+            "(macqueen).",
         ),
     ] = DEFAULTS.tolerance,
     max_iterations: Annotated[
@@ -124,6 +135,12 @@ def mesh(
     limits = limits_of(request)
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
+    if coast is not None:
+        made_at_sea = _with_coast(coast, nested, resume, request, quiet)
+        write_mesh(made_at_sea, output, command_line(), file_format)
+        if not quiet:
+            print_quality(made_at_sea, str(output))
+        return
     if nested is not None:
         # Generators and triangles serve, whatever else the file holds.
         request = replace(request, nested=read_mesh(nested, recompute_metrics=True))
@@ -134,6 +151,18 @@ def mesh(
         write_mesh(made.mesh, output, command_line(), file_format)
     if not quiet:
         print_quality(made.mesh, str(output))
+
+
+def _with_coast(coast: str, nested: Path | None, resume: bool, request: "MeshRequest", quiet: bool) -> "VoronoiMesh":
+    """The mesh of the cells that the coast of a region clips; it keeps no checkpoint."""
+    from mesh import MeshError, find_region, region_mesh
+    from mesh.coast.generation import coast_limits
+    from trisk.report.bars import convergence_bar
+
+    if resume or nested is not None:
+        raise MeshError("--resume and --nested do not go with --coast; leave them out")
+    with convergence_bar(coast_limits(request).tolerance, not quiet) as show:
+        return region_mesh(find_region(coast), request, show)
 
 
 @contextmanager

@@ -6,6 +6,7 @@ import pytest
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
 from mesh.discrete.operators import vertex_to_cell
 from mesh.geometry.sphere import dot, east_north, from_lonlat, to_lonlat
+from mesh.parts.culling import culled
 from postprocess.compare import remap
 from postprocess.compare.remap import remap_cells, remap_vertices
 
@@ -79,6 +80,23 @@ def test_fit_to_vertices_has_no_smoothing(larger_mesh: VoronoiMesh, points) -> N
     through_cells = remap_cells(larger_mesh, *points).scalar(at_cells) - field(*points)
     _, _, root_mean_square, _ = errors(larger_mesh, *points)
     assert np.sqrt(np.mean(through_cells**2)) > 5 * root_mean_square
+
+
+def test_values_of_a_sea_come_from_the_sea(larger_mesh: VoronoiMesh, points) -> None:
+    """Away from walls they are those of the whole mesh; beside them, fits lean to one side."""
+    sea = culled(larger_mesh, larger_mesh.lat_cell < 0.5)
+    longitude, latitude = points
+    south = latitude < 0.3
+    for remapping, place in ((remap_cells, "cell"), (remap_vertices, "vertex")):
+        found, expected = (
+            remapping(mesh, longitude, latitude).scalar(
+                field(getattr(mesh, f"lon_{place}"), getattr(mesh, f"lat_{place}"))
+            )
+            for mesh in (sea, larger_mesh)
+        )
+        np.testing.assert_allclose(found[south], expected[south], rtol=0.0, atol=1e-13)
+        coast = (latitude > 0.4) & (latitude < 0.48)
+        assert np.abs(found - field(longitude, latitude))[coast].max() < 0.02
 
 
 def test_vectors_know_no_poles(larger_mesh: VoronoiMesh) -> None:

@@ -8,10 +8,12 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mesh import VoronoiMesh, read_mesh, write_mesh
 from mesh.files.io import mesh_hash
+from mesh.parts.culling import culled
 from tests.conftest import random_mesh
 from tests.under_mpiexec import Started, needs_mpi, on_processes, wait_until
 
@@ -68,6 +70,24 @@ def test_files_are_those_of_one_process(mesh_file: Path, tmp_path: Path) -> None
     code, said = on_processes(2, resumed)
     assert code == 0
     assert "cells, processes, threads of each" in said
+    require_same(parts, whole)
+
+
+@pytest.mark.parametrize(
+    ("processes", "options"),
+    [(2, []), pytest.param(3, ALL_TERMS, marks=pytest.mark.slow)],
+    ids=["two", "three with all terms"],
+)
+def test_files_of_a_run_between_walls(
+    icosahedral_mesh: VoronoiMesh, tmp_path: Path, processes: int, options: list[object]
+) -> None:
+    """Two seas and an island: walls stand within parts, and the rims of parts beside them."""
+    kept = np.abs(icosahedral_mesh.lat_cell - 0.6) > 0.1
+    kept[np.argmin(icosahedral_mesh.lat_cell)] = False
+    write_mesh(culled(icosahedral_mesh, kept), tmp_path / "sea.nc")
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    serially(run(tmp_path / "sea.nc", whole, "--days", 0.5, *options))
+    assert on_processes(processes, run(tmp_path / "sea.nc", parts, "--days", 0.5, *options)) == (0, "")
     require_same(parts, whole)
 
 
