@@ -69,6 +69,15 @@ def test_the_coastline_of_the_north_atlantic() -> None:
     assert np.abs(away).mean() < 0.25 * spacing
 
 
+def test_america_and_the_old_world_are_one_piece_each_however_coarse() -> None:
+    """Canals cut both in the data."""
+    rings = find_region("world-ocean").coastline(np.radians(3.0))
+    for west, east, isthmus in (((-100, 40), (-60, -10), (-79.6, 9.15)), ((20, 0), (90, 60), (32.5, 30.5))):
+        places = [min(rings, key=lambda ring: np.linalg.norm(ring - at(here), axis=1).min()) for here in (west, east)]
+        assert places[0] is places[1]
+        assert not find_region("world-ocean").contains(at(isthmus), np.radians(0.1)).any()
+
+
 def test_what_is_missing_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
     real_ocean._table.cache_clear()
     monkeypatch.setitem(sys.modules, "landmetrics", None)
