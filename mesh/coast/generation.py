@@ -7,6 +7,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.coast.coastline import Coastline
+from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaCells
 from mesh.coast.sea_mesh import sea_mesh
 from mesh.coast.start import fillers, sea_spacing, starting_points
@@ -36,7 +37,17 @@ class SeaResult:
     sea: SeaCells
 
 
-def region_mesh(region: Region, request: MeshRequest, callback: Callback | None = None) -> VoronoiMesh:
+@dataclass(frozen=True)
+class Shore:
+    """How a density rises towards the coast: `factor` times at the coast, over a `width` in radians."""
+
+    width: float
+    factor: float
+
+
+def region_mesh(
+    region: Region, request: MeshRequest, callback: Callback | None = None, shore: Shore | None = None
+) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
 
     The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci`
@@ -45,6 +56,8 @@ def region_mesh(region: Region, request: MeshRequest, callback: Callback | None 
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)
+    if shore is not None:
+        density = RaisedDensity(density, region, shore.width, shore.factor)
     limits = coast_limits(request)
     spacing = spacing_before_coastline(region, cells_of(request))
     coastline = Coastline(region.coastline(COAST_SPACINGS * spacing))

@@ -65,6 +65,13 @@ def mesh(
     density_smoothing: Annotated[
         int, typer.Option("--density-smoothing", help="Smoothing passes over the field, before the power.")
     ] = DEFAULTS.density_smoothing,
+    coast_width: Annotated[
+        float | None,
+        typer.Option("--coast-width", help="Raise the density towards the coast over this width, in km on the Earth."),
+    ] = None,
+    coast_factor: Annotated[
+        float, typer.Option("--coast-factor", help="How many times --coast-width raises the density at the coast.")
+    ] = 16.0,
     start: Annotated[
         str | None,
         typer.Option(
@@ -109,7 +116,7 @@ def mesh(
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""
-    from mesh import read_mesh, write_mesh
+    from mesh import MeshError, read_mesh, write_mesh
     from mesh.files.io import least_sizes, require_format
     from mesh.generation.pipeline import generate_mesh
     from mesh.generation.scvt import limits_of
@@ -136,11 +143,16 @@ def mesh(
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
     if coast is not None:
-        made_at_sea = _with_coast(coast, nested, resume, request, quiet)
+        if resume or nested is not None:
+            raise MeshError("--resume and --nested do not go with --coast; leave them out")
+        raised = None if coast_width is None else (coast_width, coast_factor)
+        made_at_sea = _with_coast(coast, request, raised, quiet)
         write_mesh(made_at_sea, output, command_line(), file_format)
         if not quiet:
             print_quality(made_at_sea, str(output))
         return
+    if coast_width is not None:
+        raise MeshError("--coast-width goes with --coast alone; name a region, or leave it out")
     if nested is not None:
         # Generators and triangles serve, whatever else the file holds.
         request = replace(request, nested=read_mesh(nested, recompute_metrics=True))
@@ -153,16 +165,19 @@ def mesh(
         print_quality(made.mesh, str(output))
 
 
-def _with_coast(coast: str, nested: Path | None, resume: bool, request: "MeshRequest", quiet: bool) -> "VoronoiMesh":
-    """The mesh of the cells that the coast of a region clips; it keeps no checkpoint."""
-    from mesh import MeshError, find_region, region_mesh
-    from mesh.coast.generation import coast_limits
+def _with_coast(coast: str, request: "MeshRequest", raised: tuple[float, float] | None, quiet: bool) -> "VoronoiMesh":
+    """The mesh of the cells that the coast of a region clips, with its density `raised` over a width, km, by a factor.
+
+    It keeps no checkpoint.
+    """
+    from mesh import find_region, region_mesh
+    from mesh.coast.generation import Shore, coast_limits
+    from swe.constants import EARTH_RADIUS
     from trisk.report.bars import convergence_bar
 
-    if resume or nested is not None:
-        raise MeshError("--resume and --nested do not go with --coast; leave them out")
+    shore = None if raised is None else Shore(raised[0] * 1000.0 / EARTH_RADIUS, raised[1])
     with convergence_bar(coast_limits(request).tolerance, not quiet) as show:
-        return region_mesh(find_region(coast), request, show)
+        return region_mesh(find_region(coast), request, show, shore)
 
 
 @contextmanager
