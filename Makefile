@@ -11,7 +11,7 @@ MUTANTS := 200
 SEED := 1
 
 .SECONDARY:
-.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling clean
+.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling north-atlantic clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -78,6 +78,9 @@ reliability: $(VENV)/installed-dev  ## The tables of docs/reliability.md made an
 	$(BIN)/python -m tests.reliability.closed_sea 10242
 	$(BIN)/python tests/reliability/kill_runs.py 20
 	$(BIN)/python tests/reliability/mutate_meshes.py 2000
+
+north-atlantic: $(VENV)/installed-dev  ## Fig. 10 of Ju, Ringler and Gunzburger (2011): meshes, table and pictures in runs/north-atlantic
+	$(BIN)/python docs/tools/north_atlantic.py runs/north-atlantic
 
 references: $(VENV)/installed-dev  ## The stored solutions of the spectral model made anew; hours
 	$(BIN)/trisk reference williamson5 --truncation 341 -o postprocess/reference/stored/williamson5.nc

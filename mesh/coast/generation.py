@@ -56,11 +56,12 @@ def region_mesh(
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)
-    if shore is not None:
-        density = RaisedDensity(density, region, shore.width, shore.factor)
     limits = coast_limits(request)
     spacing = spacing_before_coastline(region, cells_of(request))
-    coastline = Coastline(region.coastline(COAST_SPACINGS * spacing))
+    rings = region.coastline(COAST_SPACINGS * spacing)
+    if shore is not None:
+        density = RaisedDensity(density, np.concatenate(rings), shore.width, shore.factor)
+    coastline = Coastline(rings)
     points = starting_points(coastline, cells_of(request), density, _start_of(request, density), request.seed)
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
