@@ -93,8 +93,11 @@ def _vertices(points: Array, triangles: Index, at_walls: AtWalls | None) -> Arra
 
 def _edges(points: Array, cells_on_edge: Index, at_walls: AtWalls | None) -> Array:
     """Points (n_edges, 3) midway between cells, and those at walls."""
-    edges = by_blocks(lambda cells: normalize(points[cells[:, 0]] + points[cells[:, 1]]), cells_on_edge)
-    return edges if at_walls is None else np.where(cells_on_edge[:, 1:] < 0, at_walls.edges, edges)
+    if at_walls is None:
+        return by_blocks(lambda cells: normalize(points[cells[:, 0]] + points[cells[:, 1]]), cells_on_edge)
+    edges, inner = at_walls.edges.copy(), cells_on_edge[:, 1] >= 0
+    edges[inner] = _edges(points, cells_on_edge[inner], None)
+    return edges
 
 
 def _lengths(points: Array, ends: Index) -> Array:

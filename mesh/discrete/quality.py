@@ -104,8 +104,8 @@ def neighbour_distance_ratio(mesh: VoronoiMesh, chords: Array | None = None) -> 
         inside = np.arange(edges.shape[1]) < counts[:, None]
         distances = lengths[np.where(inside, edges, 0)]
         inside &= np.isfinite(distances)
-        longest = np.where(inside, distances, 0.0).max(axis=1)
-        return np.where(inside, distances, np.inf).min(axis=1) / np.where(longest > 0.0, longest, np.inf)
+        shortest = np.where(inside, distances, np.inf).min(axis=1)
+        return shortest / np.where(inside.any(axis=1), np.where(inside, distances, 0.0).max(axis=1), np.nan)
 
     return by_blocks(ratio, mesh.edges_on_cell, mesh.n_edges_on_cell)
 

@@ -10,6 +10,7 @@ from mesh.arrays import Array
 from mesh.density.named import Density
 from mesh.density.record import name_of, source_of
 from mesh.discrete.build import mesh_from_points
+from mesh.discrete.walls import has_walls
 from mesh.errors import MeshError
 from mesh.generation.checkpoint import CheckpointKeeper
 from mesh.generation.nested import nested_scvt
@@ -140,6 +141,8 @@ def _from_start(
 def _refined(
     coarse: VoronoiMesh, request: MeshRequest, density: Density, limits: Limits, callback: Callback | None
 ) -> ScvtResult:
+    if has_walls(coarse):
+        raise MeshError("the mesh to refine has walls; give one of the whole sphere, and cull what comes of it")
     points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex
     return nested_scvt(points, triangles, density, request.cells, limits, callback, request.seed)
 

@@ -39,9 +39,12 @@ def culled(mesh: VoronoiMesh, kept: NDArray[np.bool_]) -> VoronoiMesh:
 def _narrowed(part: VoronoiMesh) -> VoronoiMesh:
     """`part` with room for the edges of its widest cell alone."""
     width = int(part.n_edges_on_cell.max())
-    of_cells = {name: getattr(part, name)[:, :width] for name in ("cells_on_cell", "edges_on_cell", "vertices_on_cell")}
-    of_edges = {name: getattr(part, name)[:, : 2 * width] for name in ("edges_on_edge", "weights_on_edge")}
-    return replace(part, **of_cells, **of_edges)
+    widths = {
+        **dict.fromkeys(("cells_on_cell", "edges_on_cell", "vertices_on_cell"), width),
+        **dict.fromkeys(("edges_on_edge", "weights_on_edge"), 2 * width),
+    }
+    rings = {name: np.ascontiguousarray(getattr(part, name)[:, :room]) for name, room in widths.items()}
+    return replace(part, **rings)  # type: ignore[arg-type]
 
 
 def _with_cells_first(part: VoronoiMesh) -> VoronoiMesh:

@@ -17,6 +17,9 @@ from mesh.voronoi_mesh import VoronoiMesh
 
 Marks = NDArray[np.bool_]
 
+ROUND = 1.2
+"""A cell lies within a circle round its centre that is wider by this than the circle of its area."""
+
 NO_CHANNEL = 1000
 """More than a cell has neighbours."""
 
@@ -54,7 +57,8 @@ def sea_cells(mesh: VoronoiMesh, region: Region, *, keep_lakes: bool = False, ke
     round it, with land on either side; such cells are left out until there are none, before the largest sea is sought.
     `keep_channels` and `keep_lakes` leave them. Raises `MeshError` where no cell is left.
     """
-    inside = region.contains(normalize(mesh.cell_points))
+    radii = ROUND * np.sqrt(mesh.area_cell / np.pi) / mesh.sphere_radius
+    inside = region.contains(normalize(mesh.cell_points), radii)
     if not inside.any():
         raise MeshError(
             f"the region {region.name} holds the centre of none of the {mesh.n_cells} cells; take a larger region, or "

@@ -8,6 +8,7 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.geometry.sphere import to_lonlat
 from mesh.regions.optional import package_for_coasts
+from mesh.regions.outline import joined, straight_on_the_map
 from mesh.regions.polygons import polygon_region
 from mesh.regions.region import Region
 from mesh.safe_files import dataset
@@ -18,23 +19,19 @@ EARTH_RADIUS = 6371.0
 ROW_SPACING = 0.1
 """Degrees between rows, the first at the south pole, and between columns, the first at 180 degrees west."""
 
+CENTRAL_AMERICA = (
+    *((-95, 16.8), (-92.5, 16.2), (-90, 15), (-87.5, 14), (-86, 12.8), (-84.8, 10.7), (-83.5, 9.5), (-82, 8.7)),
+    *((-80.5, 8.6), (-79.6, 9.15), (-78.4, 9.15), (-77.5, 7.9), (-76, 6)),
+)
+SUEZ = ((31, 30.5), (35.5, 30.5))
+"""Isthmuses, degrees east and north. In the data canals cut them; on a coarse mesh they are narrower than a cell."""
+
 NORTH_ATLANTIC = (
-    *(
-        (12, 65),
-        (-66, 65),
-        (-66, 62),
-        (-64.9, 60.35),
-        (-65, 59),
-        (-66, 57),
-        (-100, 50),
-        (-102, 24),
-        (-97.5, 18.5),
-        (-95, 16.8),
-    ),
-    *((-92.5, 16.2), (-90, 15), (-87.5, 14), (-86, 12.8), (-84.8, 10.7), (-83.5, 9.5), (-82, 8.7), (-80.5, 8.6)),
-    *((-79.6, 9.15), (-78.4, 9.15), (-77.5, 7.9), (-76, 6), (-70, 0), (12, 0), (12, 10), (0, 20), (-5, 33)),
-    *((-5.6, 35.7), (-5.6, 36.2), (-4, 40), (0.5, 43), (2, 47), (6, 50), (9.5, 53.5), (9.4, 57.2), (8.5, 58.3)),
-    (12, 60),
+    *((12, 65), (-66, 65), (-66, 62), (-64.9, 60.35), (-65, 59), (-66, 57), (-74, 52), (-85, 49), (-100, 50)),
+    *((-102, 24), (-97.5, 18.5)),
+    *CENTRAL_AMERICA,
+    *((-70, 0), (12, 0), (12, 10), (0, 20), (-5, 33), (-5.6, 35.7), (-5.6, 36.2), (-4, 40), (0.5, 43), (2, 47)),
+    *((6, 50), (9.5, 53.5), (9.4, 57.2), (8.5, 58.3), (12, 60)),
 )
 """Corners, degrees east and north, of what holds the North Atlantic: through land, and across open water by walls.
 
@@ -43,8 +40,9 @@ Those are the equator, 65 degrees north, the mouths of Hudson Strait, the Medite
 
 
 def world_ocean() -> Region:
-    """All that is connected with the sea, lakes left out."""
-    return Region("world-ocean", _distance_to_the_coast)
+    """All that is connected with the sea, lakes left out; no water joins two seas at Panama or Suez."""
+    lines = [straight_on_the_map(*np.radians(line).T) for line in (CENTRAL_AMERICA, SUEZ)]
+    return Region("world-ocean", _distance_to_the_coast, isthmuses=joined(lines))
 
 
 def north_atlantic() -> Region:

@@ -11,6 +11,7 @@ from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Ellipse, Patch
 
 from mesh.arrays import Array
+from mesh.discrete.walls import has_walls
 from mesh.geometry.angles import whole_degrees_east
 from mesh.geometry.sphere import from_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
@@ -27,6 +28,9 @@ from postprocess.figures.projections import (
 CENTRAL_LONGITUDE = np.radians(270.0)
 """Longitude at the middle of maps, unless another is asked for: that of the mountain of test case 5."""
 
+LAND = "0.8"
+"""Colour of land, the grey that no usual colour map has."""
+
 VIEW_LATITUDE = np.radians(40.0)
 """Latitude under the viewer of orthographic maps, unless another is asked for."""
 
@@ -41,6 +45,7 @@ def draw_mollweide(
     polygons = globe_polygons(MOLLWEIDE, patches_for(mesh, values), longitude)
     add_polygons(axes, polygons, values, options)
     _clip_to(axes, _mollweide_rim(), axes.collections[-1])
+    add_land(axes, mesh, _mollweide_rim())
     _draw_mollweide_graticule(axes, longitude)
     return axes
 
@@ -88,6 +93,7 @@ def draw_orthographic(
     polygons = orthographic_polygons(patches_for(mesh, values), longitude, latitude)
     add_polygons(axes, polygons, values, options)
     _clip_to(axes, Circle((0.0, 0.0), 1.0), axes.collections[-1])
+    add_land(axes, mesh, Circle((0.0, 0.0), 1.0))
     for from_centre, of_line in _graticule():
         line = orthographic(from_lonlat(from_centre + longitude, of_line), longitude, latitude)
         line = np.where(line[:, 2:] > 0.0, line[:, :2], np.nan)
@@ -106,6 +112,13 @@ def add_polygons(axes: Axes, polygons: Polygons, values: Array, options: dict) -
         polygons.outlines, array=values[polygons.shown], **{"edgecolors": "face", "linewidths": 0.3, **options}
     )
     axes.add_collection(collection, autolim=False)
+
+
+def add_land(axes: Axes, mesh: VoronoiMesh, globe: Patch) -> None:
+    """Fill the `globe`, behind all else, with what shows where a mesh with walls has no cells."""
+    if has_walls(mesh):
+        globe.set(facecolor=LAND, edgecolor="none", zorder=0.0)
+        axes.add_patch(globe)
 
 
 def _clip_to(axes: Axes, rim: Patch, drawn: Artist) -> None:

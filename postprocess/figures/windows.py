@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.patches import Circle
+from matplotlib.patches import Circle, Rectangle
 from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MultipleLocator
 
@@ -12,7 +12,7 @@ from mesh.arrays import Array
 from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import from_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.figures.maps import add_polygons, latitude_label
+from postprocess.figures.maps import add_land, add_polygons, latitude_label
 from postprocess.figures.patches import patches_for
 from postprocess.figures.projections import (
     CYLINDRICAL,
@@ -60,6 +60,7 @@ def draw_orthographic_window(axes: Axes, mesh: VoronoiMesh, values: Array, optio
     polygons = orthographic_polygons(patches.taken(near), *window.centre)
     add_polygons(axes, Polygons(polygons.outlines, near[polygons.shown]), values, options)
     axes.add_patch(Circle((0.0, 0.0), 1.0, facecolor="none", edgecolor="black", linewidth=0.8))
+    add_land(axes, mesh, Circle((0.0, 0.0), 1.0))
     _draw_graticule(axes, window, distance)
     axes.set(xlim=(-half_width, half_width), ylim=(-half_height, half_height), aspect="equal", xticks=[], yticks=[])
     return axes
@@ -78,6 +79,7 @@ def draw_cylindrical(axes: Axes, mesh: VoronoiMesh, values: Array, options: dict
     shift = np.array([window.longitude, 0.0])
     outlines = [outline + shift for outline in polygons.outlines]
     add_polygons(axes, Polygons(outlines, near[polygons.shown]), values, options)
+    add_land(axes, mesh, Rectangle((window.longitude - 180.0, -90.0), 360.0, 180.0))
     axes.set(
         xlim=(window.longitude - 0.5 * window.width, window.longitude + 0.5 * window.width),
         ylim=(max(-90.0, window.latitude - 0.5 * window.height), min(90.0, window.latitude + 0.5 * window.height)),

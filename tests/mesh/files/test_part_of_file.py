@@ -15,6 +15,7 @@ from mesh.files.part_of_file import read_blocks_along_curve, read_part, scaled_h
 from mesh.files.stamped_file import NotValidatedError
 from mesh.geometry.sphere import normalize
 from mesh.partition.curve import blocks_along_curve
+from mesh.parts.culling import culled
 from mesh.parts.mesh_part import MeshPart, cut_part
 from mesh.triangulation.ordering import hilbert_keys
 
@@ -26,14 +27,16 @@ def nested_mesh() -> VoronoiMesh:
     return scvt_mesh(nested=scvt_mesh(42), density="refined-circle", cells=60)
 
 
-@pytest.fixture(params=["icosahedral", "larger", "nested"])
+@pytest.fixture(params=["icosahedral", "larger", "nested", "sea"])
 def mesh(
     request: pytest.FixtureRequest,
     icosahedral_mesh: VoronoiMesh,
     larger_mesh: VoronoiMesh,
     nested_mesh: VoronoiMesh,
 ) -> VoronoiMesh:
-    """The nested one has generators that were held."""
+    """The nested one has generators that were held, the sea has walls."""
+    if request.param == "sea":
+        return culled(larger_mesh, larger_mesh.lat_cell < 0.6)
     return {"icosahedral": icosahedral_mesh, "larger": larger_mesh, "nested": nested_mesh}[str(request.param)]
 
 

@@ -5,10 +5,11 @@ import pytest
 
 from mesh import MeshError, Region, VoronoiMesh, cull_mesh
 from mesh.arrays import Array
-from mesh.geometry.sphere import normalize
+from mesh.geometry.sphere import from_lonlat, normalize
 from mesh.parts.culling import culled
 from mesh.parts.sea_cells import connected_seas, sea_cells, without_channels
 from mesh.regions.find import find_region
+from mesh.regions.outline import Outline
 
 
 def region_of(mesh: VoronoiMesh, kept: np.ndarray) -> Region:
@@ -109,6 +110,19 @@ def test_the_box_is_culled_on_any_radius_and_twice(icosahedral_mesh: VoronoiMesh
     points: Array = part.cell_points / 6371220.0
     np.testing.assert_allclose(points, icosahedral_mesh.cell_points[kept], atol=1e-12)
     assert cull_mesh(part, region).n_cells == part.n_cells
+
+
+def test_cells_on_an_isthmus_that_is_narrower_than_a_cell_are_land(icosahedral_mesh: VoronoiMesh) -> None:
+    mesh = icosahedral_mesh
+    meridian = from_lonlat(np.full(91, 0.3), np.linspace(-1.57, 1.57, 91))
+    antimeridian = from_lonlat(np.full(91, 0.3 + np.pi), np.linspace(1.57, -1.57, 91))
+    line = np.concatenate([meridian, antimeridian])
+    isthmus = Outline(line, np.roll(line, -1, axis=0))
+    sea = sea_cells(mesh, Region("halves", lambda points: np.ones(len(points)), isthmuses=isthmus), keep_lakes=True)
+    sizes = connected_seas(mesh, sea.kept)[1]
+    assert len(sizes) == 2
+    assert 0.8 * mesh.n_cells < sizes.sum() < mesh.n_cells
+    assert abs(int(sizes[0]) - int(sizes[1])) < 0.1 * mesh.n_cells
 
 
 def test_no_cell_is_left(icosahedral_mesh: VoronoiMesh) -> None:

@@ -9,6 +9,7 @@ import pytest
 
 from mesh import VoronoiMesh, read_mesh, write_mesh
 from mesh.files.io import FORMATS
+from mesh.parts.culling import culled
 
 COORDINATES = {"thickness": "Cell", "normal_velocity": "Edge", "relative_vorticity": "Vertex"}
 
@@ -77,6 +78,21 @@ def test_uxarray_puts_fields_on_the_mesh(mountain_run: Path) -> None:
     assert (data.uxgrid.n_face, data.uxgrid.n_edge, data.uxgrid.n_node) == (162, 480, 320)
     assert [data[name].dims[-1] for name in COORDINATES] == ["n_face", "n_edge", "n_node"]
     np.testing.assert_array_equal(data["thickness"].isel(Time=1), values_of(mountain_run, "thickness", 1))
+
+
+def test_uxarray_opens_a_mesh_with_walls(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    """Its cells, edges and vertices, with the areas that they have and no neighbour across the coast."""
+    uxarray = pytest.importorskip("uxarray")
+    sea = culled(small_mesh, small_mesh.lat_cell < 0.5)
+    write_mesh(sea, tmp_path / "sea.nc")
+    grid = uxarray.open_grid(tmp_path / "sea.nc")
+    assert (grid.n_face, grid.n_edge, grid.n_node) == (sea.n_cells, sea.n_edges, sea.n_vertices)
+    columns = grid.face_node_connectivity.values[:, : sea.max_edges]
+    np.testing.assert_array_equal(columns[sea.on_ring], sea.vertices_on_cell[sea.on_ring])
+    np.testing.assert_array_equal(np.sort(grid.edge_node_connectivity), np.sort(sea.vertices_on_edge))
+    np.testing.assert_allclose(grid.face_areas, sea.area_cell, rtol=1e-4)
+    data = uxarray.open_dataset(tmp_path / "sea.nc", tmp_path / "sea.nc")
+    np.testing.assert_array_equal(data["areaTriangle"], sea.area_triangle)
 
 
 def opened_by_vtk(path: Path) -> tuple[Any, Any, list[str]]:
