@@ -7,6 +7,7 @@ import pytest
 
 from mesh.arrays import Array
 from mesh.geometry.sphere import arc_length, from_lonlat
+from mesh.regions.coastline import _evenly_spaced
 from mesh.regions.outline import joined, signed, straight_on_the_map
 from mesh.regions.region import Region
 from tests.mesh.regions.rings import area_within, crossings, steps
@@ -114,3 +115,21 @@ def test_a_round_island_keeps_its_size() -> None:
     (ring,) = Region("sea", away).coastline(SPACING)
     np.testing.assert_allclose(arc_length(ring, center), 2 * SPACING, rtol=0.02)
     assert area_within([ring]) < 0.0
+
+
+def test_small_islands_go_rather_than_make_a_wall() -> None:
+    """A row of islands from coast to coast, which with its gaps, as narrow, would be one."""
+    row = tuple((-0.3, 0.3, y, y + 0.6) for y in np.arange(-4.8, 4.5, 1.2))
+    rings = boxes((-8, 8, -5, 5), islands=row).coastline(SPACING)
+    assert len(rings) == 1
+    assert np.isclose(area_within(rings), square(160), rtol=0.02)
+
+
+def test_rings_are_smoothed_along_themselves() -> None:
+    """A circle with teeth of a quarter of a spacing's length, and of a tenth's height either way."""
+    angle = np.linspace(0.0, 2 * np.pi, 1600, endpoint=False)
+    radius = 5 * SPACING + 0.1 * SPACING * np.sin(angle * round(2 * np.pi * 5 / 0.25))
+    ring = _evenly_spaced(from_lonlat(radius * np.cos(angle), radius * np.sin(angle)), SPACING)
+    away = arc_length(ring, np.array([1.0, 0.0, 0.0])) / SPACING
+    assert np.ptp(away) < 0.02
+    assert abs(away.mean() - 5.0) < 0.02

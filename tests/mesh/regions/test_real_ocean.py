@@ -24,17 +24,24 @@ def at(*places: tuple[float, float]) -> Array:
 PARIS, SAHARA, GREENLAND, CASPIAN, GENEVA = (2.35, 48.86), (20, 25), (-40, 75), (51, 42), (6.5, 46.4)
 MID_ATLANTIC, GULF, CARIBBEAN, NORTH_SEA, LABRADOR = (-40, 30), (-90, 25), (-75, 15), (3, 56), (-52, 58)
 PACIFIC, PANAMA_BAY, MEDITERRANEAN, HUDSON, BALTIC = (-150, 0), (-79.3, 8.2), (18, 35), (-85, 60), (20, 58)
-UNGAVA, ARCTIC, SOUTH_ATLANTIC, ROSS, DATE_LINE = (-67.5, 59.5), (0, 85), (-20, -5), (-175, -76), (180, 0)
+JAMES, UNGAVA, ARCTIC, SOUTH_ATLANTIC, ROSS, DATE_LINE = (
+    (-80.5, 53),
+    (-67.5, 59.5),
+    (0, 85),
+    (-20, -5),
+    (-175, -76),
+    (180, 0),
+)
 
 
 def test_what_is_sea_and_what_is_land() -> None:
     ocean = find_region("world-ocean")
     seas = (MID_ATLANTIC, GULF, CARIBBEAN, NORTH_SEA, LABRADOR, PACIFIC, PANAMA_BAY, MEDITERRANEAN, HUDSON, BALTIC)
-    assert ocean.contains(at(*seas, UNGAVA, ARCTIC, SOUTH_ATLANTIC, ROSS, DATE_LINE, (0, 90))).all()
+    assert ocean.contains(at(*seas, JAMES, UNGAVA, ARCTIC, SOUTH_ATLANTIC, ROSS, DATE_LINE, (0, 90))).all()
     assert not ocean.contains(at(PARIS, SAHARA, GREENLAND, CASPIAN, GENEVA, (80, -85), (0, -90), (135, -25))).any()
     atlantic = find_region("north-atlantic")
     assert atlantic.contains(at(MID_ATLANTIC, GULF, CARIBBEAN, NORTH_SEA, LABRADOR, (-20, 0.01), (0, 64.9))).all()
-    beyond = (PACIFIC, PANAMA_BAY, MEDITERRANEAN, HUDSON, BALTIC, UNGAVA, ARCTIC, SOUTH_ATLANTIC, (-20, -0.01))
+    beyond = (PACIFIC, PANAMA_BAY, MEDITERRANEAN, HUDSON, BALTIC, JAMES, UNGAVA, ARCTIC, (-20, -0.01))
     assert not atlantic.contains(at(*beyond, (0, 65.1), PARIS, SAHARA, (-100, 40))).any()
 
 
@@ -63,7 +70,7 @@ def test_the_coastline_of_the_north_atlantic() -> None:
     assert crossings(rings) == 0
     assert 0.15 < steps(rings).min() / spacing <= steps(rings).max() / spacing < 0.26
     inside = atlantic.contains(fibonacci_points(50000)).mean()
-    assert np.isclose(area_within(rings), 4 * np.pi * inside, rtol=0.03)
+    assert np.isclose(area_within(rings), 4 * np.pi * inside, rtol=0.05)  # small islands are sea
     away = atlantic.distance(np.concatenate(rings))
     assert np.abs(away).max() < spacing
     assert np.abs(away).mean() < 0.25 * spacing
