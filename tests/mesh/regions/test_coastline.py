@@ -118,9 +118,9 @@ def test_a_round_island_keeps_its_size() -> None:
 
 
 def test_small_islands_go_rather_than_make_a_wall() -> None:
-    """A row of islands from coast to coast, which with its gaps, as narrow, would be one."""
-    row = tuple((-0.3, 0.3, y, y + 0.6) for y in np.arange(-4.8, 4.5, 1.2))
-    rings = boxes((-8, 8, -5, 5), islands=row).coastline(SPACING)
+    """Rows of islands from coast to coast, which with their gaps, as narrow, would be a broad one."""
+    rows = tuple((x, x + 0.6, y, y + 0.6) for x in (-2.0, -0.8, 0.4, 1.6) for y in np.arange(-4.8, 4.5, 1.2))
+    rings = boxes((-8, 8, -5, 5), islands=rows).coastline(SPACING)
     assert len(rings) == 1
     assert np.isclose(area_within(rings), square(160), rtol=0.02)
 
