@@ -166,7 +166,7 @@ class DoubleGyre(Case):
     One layer, as thick as the water above the thermocline, over another at rest: `gravity` is the reduced one. The
     stress is -tau cos(2 pi s) eastward, with s from 0 to 1 between two latitudes and constant beyond them: westerlies
     in the middle. Where the mesh resolves the radius of deformation, sqrt(g h) / f or some 70 km, eddies grow within
-    a year or two.
+    a few years.
     """
 
     name: ClassVar[str] = "double-gyre"
@@ -177,13 +177,13 @@ class DoubleGyre(Case):
     )
     recommended_days: ClassVar[float] = 3650.0
 
-    gravity: float = parameter(0.05, "m/s2", "Reduced acceleration of gravity")
-    depth: float = parameter(1000.0, "m", "Thickness of the layer at rest")
+    gravity: float = parameter(0.1, "m/s2", "Reduced acceleration of gravity")
+    depth: float = parameter(500.0, "m", "Thickness of the layer at rest")
     wind_stress: float = parameter(0.1, "N/m2", "Largest stress tau of the wind")
     wind_south: float = parameter(math.pi / 12.0, "rad", "Southern latitude of the strongest easterlies")
     wind_north: float = parameter(65.0 * math.pi / 180.0, "rad", "Northern latitude of the strongest easterlies")
     drag_rate: float = parameter(1e-7, "1/s", "Rate of the linear drag")
-    viscosity: float = parameter(500.0, "m2/s", "Laplacian viscosity")
+    viscosity: float = parameter(300.0, "m2/s", "Laplacian viscosity")
 
     def __post_init__(self) -> None:
         super().__post_init__()

@@ -58,11 +58,11 @@ class Munk(Gyre):
 
     def streamfunction(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """Steady."""
-        return chebyshev.chebval2d(*self._scaled(longitude, latitude), solution(self).streamfunction)
+        return evaluated(solution(self).streamfunction, *self._scaled(longitude, latitude))
 
     def thickness(self, longitude: Array, latitude: Array, time: float = 0.0) -> Array:
         """The depth and a surface whose slope balances wind, viscosity and Coriolis force."""
-        pressure = chebyshev.chebval2d(*self._scaled(longitude, latitude), solution(self).pressure)
+        pressure = evaluated(solution(self).pressure, *self._scaled(longitude, latitude))
         pressure += self.coriolis(longitude, latitude) * self.streamfunction(longitude, latitude)
         return self.depth + pressure / self.gravity
 
@@ -70,6 +70,11 @@ class Munk(Gyre):
         """Positions in the sea, from -1 to 1 in both directions."""
         x, y = self.in_box(longitude, latitude)
         return 2.0 * x / self.width - 1.0, 2.0 * y / self.height - 1.0
+
+
+def evaluated(series: Array, x: Array, y: Array) -> Array:
+    """Values of a series of coefficients (n, m) at positions from -1 to 1."""
+    return np.asarray(chebyshev.chebval2d(x, y, series), dtype=np.float64)
 
 
 @lru_cache(maxsize=8)
@@ -139,7 +144,8 @@ def pressure_series(case: Munk, streamfunction: Array) -> Array:
     def at(x: Array, dx: int, dy: int) -> Array:
         """Derivative of psi at `x` (k,) and the nodes in y, (n, k)."""
         derivative = chebyshev.chebder(chebyshev.chebder(streamfunction, dx, axis=0), dy, axis=1)
-        return along**dx * across**dy * chebyshev.chebgrid2d(x, nodes, derivative).T
+        values = along**dx * across**dy * chebyshev.chebgrid2d(x, nodes, derivative).T
+        return np.asarray(values, dtype=np.float64)
 
     inverse = np.linalg.inv(chebyshev.chebvander(nodes, len(nodes) - 1))
     middle = np.zeros(1)
@@ -148,5 +154,6 @@ def pressure_series(case: Munk, streamfunction: Array) -> Array:
     wind = -case.driving * np.cos(0.5 * math.pi * (nodes[:, None] + 1.0))
     eastward = wind - case.viscosity * bend
     result = chebyshev.chebint(inverse @ eastward.T @ inverse.T, axis=0, scl=1.0 / along, lbnd=0.0)
-    result[0] += chebyshev.chebint(inverse @ northward[:, 0], scl=1.0 / across)[: len(nodes)]
-    return result
+    result = np.pad(result, ((0, 0), (0, 1)))
+    result[0] += chebyshev.chebint(inverse @ northward[:, 0], scl=1.0 / across)
+    return np.asarray(result, dtype=np.float64)
