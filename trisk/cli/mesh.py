@@ -60,7 +60,7 @@ def mesh(
         typer.Option(
             "--start",
             help="icosahedral, fibonacci, random or random-root; by default the first, or the "
-            "second where the first has no such mesh.",
+            "second where the first has no such mesh, and under a density from coarse meshes.",
         ),
     ] = DEFAULTS.start,
     seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,
