@@ -28,7 +28,8 @@ class MeshRequest:
         A name, the name of a NetCDF file, or any callable (see `mesh.density.named`).
     start
         Starting points (see `mesh.generation.generators.starting_points`); by default from the bisected
-        icosahedron where that has this number of cells, else from the Fibonacci spiral.
+        icosahedron where that has this number of cells, else from the Fibonacci spiral; `lbfgs` under a density refines
+        a converged mesh of a quarter as many cells, and so on down.
     method
         `lbfgs`, `lloyd`, `multilevel` (L-BFGS on icosahedral meshes from coarse to fine), `probabilistic` or
         `macqueen`.

@@ -67,9 +67,12 @@ def _bilinear(points: Array, west: float, latitude: Array, longitude: Array, val
     Latitudes (rows,) ascend from pole to pole; longitudes (columns,) ascend from `west` and hold [0, 2 pi].
     """
     result = np.empty(len(points))
+    west_x, west_y = np.cos(west), np.sin(west)
     for point in range(len(points)):
         x, y, z = points[point, 0], points[point, 1], points[point, 2]
-        east = (arctangent(y, x) - west) % TURN
+        east = arctangent(y * west_x - x * west_y, x * west_x + y * west_y)
+        if east < 0.0:
+            east += TURN
         row, up = _interval(latitude, arctangent(z, np.sqrt(x * x + y * y)))
         column, along = _interval(longitude, east)
         # In this form equal values give just that value between them.

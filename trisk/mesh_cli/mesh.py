@@ -77,7 +77,8 @@ def mesh(
         typer.Option(
             "--start",
             help="icosahedral, fibonacci, random or random-root; by default the first, or the "
-            "second where the first has no such mesh; with a coast the second, or the last under a density.",
+            "second where the first has no such mesh, and under a density from coarse meshes; with a coast the second, "
+            "or the last under a density.",
         ),
     ] = DEFAULTS.start,
     seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,

@@ -3,8 +3,15 @@ import pytest
 
 import mesh.generation.generators
 from mesh import MeshError
-from mesh.generation.generators import MAXIMUM_CELLS, icosahedral_level, icosahedral_points, starting_points
-from mesh.geometry.sphere import fibonacci_points
+from mesh.generation.generators import (
+    MAXIMUM_CELLS,
+    icosahedral_level,
+    icosahedral_mesh,
+    icosahedral_points,
+    refine,
+    starting_points,
+)
+from mesh.geometry.sphere import fibonacci_points, triangle_area
 
 
 @pytest.mark.parametrize("level", [0, 1, 2, 3])
@@ -19,6 +26,18 @@ def test_bisection_gives_unit_points_in_the_known_number(level: int) -> None:
 def test_each_level_keeps_the_points_of_the_one_before() -> None:
     coarse, fine = icosahedral_points(1), icosahedral_points(2)
     np.testing.assert_array_equal(fine[: len(coarse)], coarse)
+
+
+@pytest.mark.parametrize("cells", [162, 163, 165, 242])
+def test_refined_mesh_has_any_number_of_cells_and_covers_the_sphere_once(cells: int) -> None:
+    points, triangles = refine(*icosahedral_mesh(1), cells)
+    assert points.shape == (cells, 3)
+    assert triangles.shape == (2 * cells - 4, 3)
+    np.testing.assert_allclose(np.linalg.norm(points, axis=1), 1.0, rtol=1e-15)
+    areas = triangle_area(*(points[triangles[:, k]] for k in range(3)))
+    assert areas.min() > 0.0
+    assert areas.sum() == pytest.approx(4.0 * np.pi, rel=1e-12)
+    assert len(np.unique(triangles)) == cells
 
 
 def test_fibonacci_points_are_spread_evenly() -> None:

@@ -1,4 +1,5 @@
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import count
 from types import SimpleNamespace
 
@@ -10,9 +11,10 @@ import mesh.generation.nested
 import mesh.generation.optimizer
 import mesh.generation.scvt
 from mesh import MeshError, mesh_quality, scvt_mesh
-from mesh.density.named import RefinedBox
+from mesh.density.named import NAMED, RefinedBox
+from mesh.errors import HemisphereError
 from mesh.generation.nested import nested_scvt
-from mesh.generation.optimizer import Iterate, Limits, ScvtResult
+from mesh.generation.optimizer import Callback, Iterate, Limits, Optimizer, ScvtResult
 from mesh.generation.scvt import generate_scvt, optimize
 from mesh.geometry.sphere import arc_length, dot, fibonacci_points, normalize
 from mesh.integrals.moments import masses_and_moments
@@ -224,3 +226,56 @@ def test_loops_that_wake_the_threads_are_those_that_do_not(monkeypatch: pytest.M
     monkeypatch.setattr("mesh.generation.multilevel.SERIAL_LIMIT", 10)
     found = scvt_mesh(642, start="fibonacci", tolerance=1e-6)
     np.testing.assert_array_equal(found.cell_points, expected.cell_points)
+
+
+@pytest.mark.parametrize("cells", [1001, 1003])
+def test_under_a_density_a_coarse_mesh_comes_first(cells: int) -> None:
+    """The generators start spread as the density asks: the energy at the start is near that at the end."""
+    energies: list[float] = []
+    request = MeshRequest(cells, RefinedBox(), tolerance=1e-4)
+    refined = generate_scvt(request, lambda iterate: energies.append(iterate.energy))
+    assert refined.points.shape == (cells, 3)
+    assert energies[0] < 1.15 * energies[-1]
+    fibonacci = generate_scvt(replace(request, start="fibonacci"))
+    assert fibonacci.history.energy[0] > 1.3 * fibonacci.history.energy[-1]
+    assert refined.history.energy[-1] < 1.002 * fibonacci.history.energy[-1]
+
+
+def test_a_coarse_mesh_that_leaves_a_hemisphere_is_skipped(monkeypatch: pytest.MonkeyPatch) -> None:
+    tried: list[int] = []
+
+    def failing(self: Optimizer, limits: Limits, callback: Callback | None = None) -> ScvtResult:
+        tried.append(len(self._current.points))
+        if len(tried) == 1:
+            raise HemisphereError("the points lie in one hemisphere")
+        return run(self, limits, callback)
+
+    run = Optimizer.run
+    monkeypatch.setattr(Optimizer, "run", failing)
+    result = generate_scvt(MeshRequest(1001, RefinedBox(), tolerance=1e-2))
+    assert tried == [251, 1001]
+    assert result.history.residual[-1] <= 1e-2
+
+
+def test_density_meshes_do_not_depend_on_the_number_of_threads() -> None:
+    request = MeshRequest(2600, "refined-circle", tolerance=0.05)
+    threads, results = numba.get_num_threads(), []
+    for number in (1, threads):
+        numba.set_num_threads(number)
+        results.append(generate_scvt(request).points)
+    np.testing.assert_array_equal(*results)
+
+
+@pytest.mark.slow
+def test_spacing_follows_the_density() -> None:
+    """Widths go like density^(-1/4), within 10 percent in the mean, and the mesh is as good as one from elsewhere."""
+    density = NAMED["refined-circle"]
+    mesh = scvt_mesh(10242, density="refined-circle")
+    points = normalize(mesh.cell_points)
+    ratio = np.sqrt(mesh.area_cell) * density(points) ** 0.25
+    ratio /= ratio.mean()
+    assert np.abs(ratio - 1.0).mean() < 0.1
+    quality = mesh_quality(mesh, density)
+    assert quality.residual < 1.1e-6
+    assert quality.q_avg > 0.985
+    assert quality.sigma_avg > 0.89
