@@ -14,7 +14,7 @@ from swe.state import State
 class Viscosity(Forcing):
     """Laplacian viscosity, du/dt = A lap u = A [grad(div u) + k x grad(curl u)], with the `viscosity` A, m2/s.
 
-    At a wall the vorticity is that of a fluid with `wall_slip` along it, from 0, no slip, to 1, free slip; give the same
+    At a wall the vorticity is that of a fluid with `wall_slip` along it, from 0 (none) to 1 (free); give the same
     to the run. Raises `InputError` where the viscosity is negative, or the slip is not from 0 to 1.
     """
 
