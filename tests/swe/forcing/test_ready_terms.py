@@ -85,6 +85,20 @@ def test_accelerations_are_those_of_the_equations(part: VoronoiMesh) -> None:
     assert not added["relaxation"].normal_velocity.any()
 
 
+@pytest.mark.parametrize("slip", [0.0, 0.4, 1.0])
+def test_viscosity_takes_the_slip_along_walls(part: VoronoiMesh, slip: float) -> None:
+    term = Viscosity(1e6, wall_slip=slip)
+    model, state = random_model(part, term, seed=4)
+    mesh, u = model.mesh, state.normal_velocity
+    operators = build_operators(mesh, slip)
+    tail, head = mesh.vertices_on_edge.T
+    curl = operators.curl @ u
+    expected = 1e6 * (operators.gradient @ (operators.divergence @ u) - (curl[head] - curl[tail]) / mesh.dv_edge)
+    expected[wall_edges(mesh)] = 0.0
+    added = model.tendency_of(term, state).normal_velocity
+    np.testing.assert_allclose(added, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
 def test_budgets_are_the_work_of_each_term(part: VoronoiMesh) -> None:
     """Wind does tau . u, drag takes r h u^2, both drags and viscosity take energy, relaxation alone changes mass."""
     model, state = random_model(part, *ready(), seed=4)
@@ -191,6 +205,7 @@ def test_a_term_may_serve_two_meshes(small_mesh: VoronoiMesh, icosahedral_mesh: 
         (lambda: LinearDrag(-1.0), "the rate of the drag is -1; it must be zero or positive"),
         (lambda: QuadraticDrag(float("nan")), "the drag coefficient is nan; it must be zero or positive"),
         (lambda: Viscosity("much"), "the viscosity is 'much'"),
+        (lambda: Viscosity(1.0, wall_slip=1.5), "the slip along walls is 1.5; it must be a number from 0 to 1"),
         (lambda: ThicknessRelaxation(1000.0, 0.0), "the time scale of the relaxation is 0; it must be positive"),
         (lambda: ThicknessRelaxation(float("inf"), 1.0), "the thickness to relax to is inf; give a finite number, or"),
         (lambda: WindStress(0.1, density=-5.0), "the density is -5; it must be positive"),
