@@ -2,12 +2,17 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import Normalize
+from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
+from mesh.discrete.walls import has_walls
+from mesh.geometry.sphere import arc_length, normalize, to_lonlat
+from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.adaptation.energy_density import FLOOR, POWER, SMOOTHING, asked_spacing
 from postprocess.adaptation.errors import Window, rows_of, windows
 from postprocess.adaptation.rounds import Adaptation, Plan
@@ -16,6 +21,9 @@ from postprocess.studies.page import table_of, write_page
 from postprocess.studies.study_folder import StudyRow, write_table
 
 TABLE_FILE = "adapt.csv"
+
+COLOUR_RANGE = 1000.0
+"""Colours span no more than this ratio."""
 
 MESH_COLUMNS = {
     "name": "run",
@@ -60,8 +68,8 @@ def _text(plan: Plan, rows: Sequence[StudyRow]) -> str:
     text = (
         f"Each round runs for {plan.days:g} days on {plan.cells} cells, {start}. The density of its mesh is "
         f"max({FLOOR:g}, KE / KEmax)^{POWER:g} of the mean kinetic energy KE over the second half of the round before, "
-        f"smoothed {SMOOTHING} times. Errors are differences from a uniform mesh of {plan.fine} cells, of which "
-        "the means over each cell are taken; the cost is the number of cells times that of steps."
+        f"after {SMOOTHING} passes of smoothing. Errors are differences from a uniform mesh of {plan.fine} cells, of "
+        "which the means over each cell are taken; the cost is the number of cells times that of steps."
     )
     return " ".join([text, verdict(rows, plan.begin_again)])
 
@@ -82,15 +90,27 @@ def verdict(rows: Sequence[StudyRow], begin_again: bool) -> str:
 
 
 def _maps(compared: Sequence[Window], label: str, values: Callable[[Window], Array]) -> Figure:
-    """A map for each run, all with the same colours."""
+    """A map for each run, all with the same colours, which go by the logarithm."""
     shown = [values(each) for each in compared]
-    norm = Normalize(min(each.min() for each in shown), max(each.max() for each in shown))
+    most = max(each.max() for each in shown)
+    norm = LogNorm(max(min(each.min() for each in shown), most / COLOUR_RANGE), most)
     figure = Figure(figsize=(6.4 * min(2, len(shown)), 3.9 * ((len(shown) + 1) // 2)), layout="constrained")
     for place, (window, field) in enumerate(zip(compared, shown, strict=True), 1):
         axes = figure.add_subplot((len(shown) + 1) // 2, min(2, len(shown)), place)
-        plot_field(window.run.mesh, field, axes, norm=norm, label=label)
+        plot_field(window.run.mesh, field, axes, norm=norm, label=label, **_view(window.run.mesh))
         axes.set_title(f"{window.name}, days {window.first:g} to {window.first + window.days:g}")
     return figure
+
+
+def _view(mesh: VoronoiMesh) -> dict[str, Any]:
+    """Centre and extent, degrees, of a map that shows a sea; the globe where there is no coast."""
+    if not has_walls(mesh):
+        return {}
+    points = normalize(mesh.cell_points)
+    middle = normalize(points.sum(axis=0))
+    longitude, latitude = to_lonlat(middle)
+    reach = float(np.degrees(arc_length(points, middle).max()))
+    return {"centre": (float(np.degrees(longitude)), float(np.degrees(latitude))), "extent": min(2.1 * reach, 180.0)}
 
 
 def _law_figure(compared: Sequence[Window]) -> Figure:

@@ -1,7 +1,7 @@
 """The density of a mesh that follows the kinetic energy of a run, after Ju, Ringler and Gunzburger (2011), section 4.2.
 
-rho = max(FLOOR, KE / KEmax)^POWER, smoothed before the power is taken. Spacings go like rho^(-1/4), so that they vary
-by 1 / FLOOR.
+rho = max(FLOOR, KE / KEmax)^POWER, KE being smoothed before by passes over neighbouring cells. Spacings go like
+rho^(-1/4), so that they vary by 1 / FLOOR.
 """
 
 from pathlib import Path
@@ -12,6 +12,7 @@ from mesh.arrays import Array
 from mesh.conventions import BY_NAME
 from mesh.mesh_request import MeshRequest
 from mesh.safe_files import dataset, written_aside
+from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.runs.reading import DAY_TOLERANCE, Run
 from swe.errors import InputError
 
@@ -35,12 +36,21 @@ def time_mean(run: Run, field: str, first: float | None = None, last: float | No
     return total / len(days)
 
 
+def smoothed(mesh: VoronoiMesh, values: Array, passes: int) -> Array:
+    """Values (n_cells,) after so many passes of the mean over each cell and its neighbours."""
+    there = mesh.on_ring & (mesh.cells_on_cell >= 0)
+    neighbours, count = np.where(there, mesh.cells_on_cell, 0), 1 + there.sum(axis=1)
+    for _ in range(passes):
+        values = (values + np.where(there, values[neighbours], 0.0).sum(axis=1)) / count
+    return values
+
+
 def write_energy(run: Run, path: Path) -> None:
-    """Write the mean kinetic energy of a run, over its largest value, to a file that `density` of a mesh takes.
+    """Write the smoothed mean kinetic energy of a run, over its largest value, for a mesh to take as its density.
 
     Raises `InputError` where nothing moves.
     """
-    energy = time_mean(run, VARIABLE)
+    energy = smoothed(run.mesh, time_mean(run, VARIABLE), SMOOTHING)
     if not energy.max() > 0.0:
         raise InputError(f"{run.directory} has no kinetic energy that a mesh could follow; run it for longer")
     with written_aside(path) as aside, dataset(aside, "w") as file:
@@ -49,7 +59,7 @@ def write_energy(run: Run, path: Path) -> None:
             coordinate = file.createVariable(BY_NAME[name].file_name, "f8", ("nCells",))
             coordinate[:] = getattr(run.mesh, name)
         variable = file.createVariable(VARIABLE, "f8", ("nCells",))
-        variable.setncatts({"units": "1", "long_name": "mean kinetic energy over its largest value"})
+        variable.setncatts({"units": "1", "long_name": "smoothed mean kinetic energy over its largest value"})
         variable[:] = energy / energy.max()
 
 
@@ -62,7 +72,6 @@ def request_for(cells: int, path: Path, tolerance: float) -> MeshRequest:
         density_variable=VARIABLE,
         density_floor=FLOOR,
         density_power=POWER,
-        density_smoothing=SMOOTHING,
     )
 
 

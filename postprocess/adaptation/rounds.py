@@ -162,11 +162,11 @@ class _Runner:
         return read_mesh(path)
 
     def _made(self, request: MeshRequest) -> VoronoiMesh:
-        if self._region is None:
-            return generate_mesh(request).mesh
         with warnings.catch_warnings():
-            # The energy is that of the sea; nothing is asked for on land.
+            # The energy is known wherever a mesh is asked for.
             warnings.filterwarnings("ignore", ".*covers a part of the globe", MeshWarning)
+            if self._region is None:
+                return generate_mesh(request).mesh
             return region_mesh(self._region, request)
 
     def _run(self, name: str, case: Case, mesh: VoronoiMesh, days: float) -> Run:

@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from cases import Galewsky
+from mesh import VoronoiMesh
+from mesh.parts.cutting import without_cells
 from postprocess.adaptation.adapt_report import verdict, write_adaptation
-from postprocess.adaptation.energy_density import asked_spacing, time_mean
+from postprocess.adaptation.energy_density import SMOOTHING, asked_spacing, smoothed, time_mean
 from postprocess.adaptation.errors import rows_of
 from postprocess.adaptation.rounds import Adaptation, Plan, adapt
 from swe.errors import InputError
@@ -47,8 +49,9 @@ def test_meshes_are_fine_where_the_energy_is(made: Adaptation) -> None:
 
 def test_the_field_of_the_density_is_the_mean_over_its_largest_value(plan: Plan, made: Adaptation) -> None:
     energy = time_mean(made.rounds[0].run, "kinetic_energy")
+    spread = smoothed(made.rounds[0].run.mesh, energy, SMOOTHING)
     with netCDF4.Dataset(plan.folder / "energy-1.nc") as file:
-        np.testing.assert_array_equal(file["kinetic_energy"][:], energy / energy.max())
+        np.testing.assert_array_equal(file["kinetic_energy"][:], spread / spread.max())
     run = made.rounds[0].run
     last = [run.snapshot(day).fields["kinetic_energy"] for day in run.days if day >= 0.25 - 1e-9]
     assert len(last) == 11
@@ -116,3 +119,15 @@ def test_spacings_asked_for_fill_the_area() -> None:
     asked = asked_spacing(np.array([1.0, 1.0, 16.0]), area)
     np.testing.assert_allclose(asked / asked[0], [1.0, 1.0, 0.5])
     assert np.sum(np.sqrt(3.0) / 2.0 * asked**2) == pytest.approx(6.0)
+
+
+def test_smoothing_is_the_mean_with_those_neighbours_that_are_there(icosahedral_mesh: VoronoiMesh) -> None:
+    mesh = without_cells(icosahedral_mesh, icosahedral_mesh.z_cell < 0.0)
+    values = np.zeros(mesh.n_cells)
+    coastal = int(np.flatnonzero((mesh.on_ring & (mesh.cells_on_cell < 0)).any(axis=1))[0])
+    values[coastal] = 1.0
+    once = smoothed(mesh, values, 1)
+    neighbours = mesh.cells_on_cell[coastal, : mesh.n_edges_on_cell[coastal]]
+    assert once[coastal] == pytest.approx(1.0 / (1 + np.count_nonzero(neighbours >= 0)))
+    np.testing.assert_array_equal(np.sort(np.flatnonzero(once)), np.sort([coastal, *neighbours[neighbours >= 0]]))
+    np.testing.assert_allclose(smoothed(mesh, np.full(mesh.n_cells, 2.0), 20), 2.0)
