@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cases.base import Case, parameter
 from cases.basins import ON_THE_COAST, Basin
 from mesh.arrays import Array
+from mesh.geometry.angles import about_zero
 from swe.equations.terms import Forcing
 from swe.errors import InputError
 from swe.forcing.drag import LinearDrag
@@ -86,7 +87,7 @@ class Gyre(Basin):
     def _from_middle(self, longitude: Array) -> Array:
         """Longitude from the middle of the sea, between minus and plus half a turn."""
         middle = 0.5 * (self.west + self.east)
-        return np.asarray((longitude - middle + math.pi) % (2.0 * math.pi) - math.pi)
+        return about_zero(longitude - middle)
 
     def stress(self, longitude: Array, latitude: Array) -> Array:
         """Eastward stress of the wind, N/m2."""

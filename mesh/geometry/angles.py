@@ -23,6 +23,11 @@ def eastward_of_half_turns(angle: Array) -> Array:
     return _below_a_turn(np.where(angle < 0.0, angle + TURN, angle))
 
 
+def degrees_eastward(angle: Array) -> Array:
+    """The angle, in degrees, in [0, 360)."""
+    return np.where((wrapped := angle % 360.0) < 360.0, wrapped, 0.0)
+
+
 def whole_degrees_east(longitude: float) -> int:
     """The longitude in degrees, 0 to 359, as labels of maps have it."""
     return round(np.degrees(longitude)) % 360

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
+from mesh.geometry.angles import degrees_eastward
 from mesh.geometry.sphere import to_lonlat
 from mesh.regions.outline import joined, signed, straight_on_the_map
 from mesh.regions.region import Region
@@ -28,11 +29,11 @@ def box_region(text: str) -> Region:
     """
     west, east, south, north = (float(number) for number in text.split(","))
     _require_box(west, east, south, north, text)
-    width = 360.0 if east - west == 360.0 else (east - west) % 360.0
+    width = 360.0 if east - west == 360.0 else float(degrees_eastward(np.array(east - west)))
 
     def inside(points: Array) -> NDArray[np.bool_]:
         longitude, latitude = (np.degrees(angle) for angle in to_lonlat(points))
-        eastward = (longitude - west + ROUNDING) % 360.0
+        eastward = degrees_eastward(longitude - west + ROUNDING)
         return (eastward <= width + 2.0 * ROUNDING) & (np.abs(latitude - 0.5 * (south + north)) <= half + ROUNDING)
 
     half = 0.5 * (north - south)
@@ -52,5 +53,5 @@ def _require_box(west: float, east: float, south: float, north: float, text: str
         )
     if not (abs(west) <= 360.0 and abs(east) <= 720.0 and abs(east - west) <= 360.0):
         raise MeshError(f"the box {text} has longitudes that go round more than once; {ORDER}")
-    if (east - west) % 360.0 == 0.0 and east - west != 360.0:
+    if degrees_eastward(np.array(east - west)) == 0.0 and east - west != 360.0:
         raise MeshError(f"the box {text} has no width; {ORDER}, and -180,180 for all longitudes")

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array
 from mesh.density.field_coordinates import read_coordinates, read_numbers
 from mesh.errors import MeshError
+from mesh.geometry.angles import degrees_eastward
 from mesh.geometry.sphere import to_lonlat
 from mesh.regions.outline import joined, signed, straight_on_the_map
 from mesh.regions.region import Region
@@ -66,7 +67,9 @@ def _read(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> tupl
     values = _positive_within(values if tuple(kept) == grid else values.T, variable)
     north, row = np.unique(np.degrees(latitude.values), return_index=True)
     # Both ends of a full circle are one meridian.
-    east, column = np.unique(np.round(np.degrees(longitude.values), 9) % TURN, return_index=True)
+    east, column = np.unique(
+        degrees_eastward(np.round(np.degrees(longitude.values), 9).astype(np.float64)), return_index=True
+    )
     if min(len(north), len(east)) < 2:
         raise MeshError(
             f"{path}: {variable.name} has {len(north)} latitudes and {len(east)} longitudes; give two or more"
@@ -118,7 +121,7 @@ def _interpolation(longitude: Array, latitude: Array, values: Array) -> Callable
 
     def field(points: Array) -> Array:
         east, north = (np.degrees(angle) for angle in to_lonlat(points))
-        return interpolate(np.stack([north, longitude[0] + (east - longitude[0]) % TURN], axis=1))
+        return interpolate(np.stack([north, longitude[0] + degrees_eastward(east - longitude[0])], axis=1))
 
     return field
 

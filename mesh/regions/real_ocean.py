@@ -6,6 +6,7 @@ import netCDF4
 import numpy as np
 
 from mesh.arrays import Array, Index
+from mesh.geometry.angles import degrees_eastward
 from mesh.geometry.sphere import to_lonlat
 from mesh.regions.optional import package_for_coasts
 from mesh.regions.outline import joined, straight_on_the_map
@@ -63,7 +64,7 @@ def _distance_to_the_coast(points: Array) -> Array:
     values, unit = _table()
     longitude, latitude = to_lonlat(points)
     row, up = _places(np.degrees(latitude) + 90.0, len(values) - 1)
-    column, across = _places((np.degrees(longitude) + 180.0) % 360.0, values.shape[1])
+    column, across = _places(degrees_eastward(np.degrees(longitude) + 180.0), values.shape[1])
     east = (column + 1) % values.shape[1]
     below = (1.0 - across) * values[row, column] + across * values[row, east]
     above = (1.0 - across) * values[row + 1, column] + across * values[row + 1, east]

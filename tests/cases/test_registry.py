@@ -33,7 +33,7 @@ METHODS = """
 @pytest.fixture
 def splash(tmp_path: Path) -> Path:
     """The example of the documentation as a file."""
-    example = re.search(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    example = re.search(r"`splash.py`:\s+```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
     assert example
     path = tmp_path / "splash.py"
     path.write_text(example[1])

@@ -35,6 +35,7 @@ from postprocess.figures.compare_maps import write_maps
 from postprocess.figures.plots import plot_run
 from postprocess.figures.spectra_figure import write_spectra_of
 from postprocess.runs.reading import read_run
+from postprocess.studies import page as pages
 from postprocess.studies import study_report
 from postprocess.studies.families import FAMILIES, Family
 from postprocess.studies.mesh_study import Plan
@@ -145,7 +146,7 @@ def _studies(found: Shown) -> None:
     families = {name: _turned_family(name) for name in plan.families}
     with (
         found.figures("study of meshes"),
-        mock.patch.object(study_report, "_png", _taker(found, "study of meshes")),
+        mock.patch.object(pages, "_png", _taker(found, "study of meshes")),
         mock.patch.dict(FAMILIES, families),
     ):
         finest, rows = carry_out_meshes(plan, False, told.append)
@@ -155,7 +156,7 @@ def _studies(found: Shown) -> None:
     found.found["study of meshes: told"] = told
     times = TimePlan(Path("times"), Galewsky(), scvt_mesh(162), 0.25, (900.0, 1800.0, 3600.0))
     told = []
-    with mock.patch.object(study_report, "_png", _taker(found, "study of times")):
+    with mock.patch.object(pages, "_png", _taker(found, "study of times")):
         time_rows = carry_out_times(times, False, told.append)
         page = study_report.write_time_report(times, time_rows, arguments)
     found.found["study of times: page"] = _page(page)

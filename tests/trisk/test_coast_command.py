@@ -15,7 +15,7 @@ def test_file_has_the_cells_of_the_region(trisk: Call, tmp_path: Path) -> None:
     target = tmp_path / "sea.nc"
     code, out, _ = trisk("mesh", "--coast", BOX, "--cells", 150, "-o", target)
     assert code == 0
-    assert str(target.name) in out.replace("\n", "")
+    assert "Quality of" in out
     mesh = read_mesh(target)
     assert mesh.n_cells == 150
     assert has_walls(mesh)

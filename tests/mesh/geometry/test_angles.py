@@ -6,7 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesh.geometry.angles import TURN, about_zero, eastward, eastward_of_half_turns, whole_degrees_east
+from mesh.geometry.angles import (
+    TURN,
+    about_zero,
+    degrees_eastward,
+    eastward,
+    eastward_of_half_turns,
+    whole_degrees_east,
+)
 
 ROOT = Path(__file__).parents[3]
 ANGLES = np.array([-7.0, -np.pi, -1e-20, -0.0, 0.0, 1.0, np.pi, 4.0, TURN, 9.0, 100.0])
@@ -17,6 +24,11 @@ def test_angles_about_zero() -> None:
     assert np.all((wrapped >= -np.pi) & (wrapped < np.pi))
     np.testing.assert_allclose(np.exp(1j * wrapped), np.exp(1j * ANGLES), atol=1e-13)
     np.testing.assert_allclose(about_zero(np.array([np.pi, 4.0])), [-np.pi, 4.0 - TURN], atol=1e-15)
+
+
+def test_degrees_end_below_a_turn() -> None:
+    angles = np.array([-400.0, -1e-20, 0.0, 359.5, 360.0, 725.0])
+    np.testing.assert_array_equal(degrees_eastward(angles), [320.0, 0.0, 0.0, 359.5, 0.0, 5.0])
 
 
 def test_eastward_angles_end_below_a_turn() -> None:
