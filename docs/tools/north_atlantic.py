@@ -19,11 +19,12 @@ from mesh import MeshRequest, VoronoiMesh, find_region, mesh_quality, read_mesh,
 from mesh.arrays import Array
 from mesh.coast.generation import Shore
 from mesh.discrete.walls import wall_edges
+from mesh.geometry.sphere import hexagon_spacing
 from postprocess import open_run
 from postprocess.adaptation.energy_density import asked_spacing, request_for, write_energy
 from postprocess.figures.field_map import plot_field
 from swe import Simulation
-from swe.constants import EARTH_RADIUS
+from swe.constants import EARTH_RADIUS, SECONDS_PER_DAY
 
 REGION = "north-atlantic"
 CELLS = (47305, 183907)
@@ -48,8 +49,9 @@ def energy_of_coarse_run(folder: Path) -> Path:
     path, run = folder / "energy.nc", folder / "coarse"
     if not path.exists():
         mesh = region_mesh(find_region(REGION), MeshRequest(COARSE_CELLS))
-        day = 86400.0
-        Simulation(mesh, DoubleGyre(), run, snapshot_interval=SNAPSHOT_DAYS * day, overwrite=True).run(COARSE_DAYS)
+        Simulation(mesh, DoubleGyre(), run, snapshot_interval=SNAPSHOT_DAYS * SECONDS_PER_DAY, overwrite=True).run(
+            COARSE_DAYS
+        )
         write_energy(open_run(run), path)
     return path
 
@@ -69,7 +71,7 @@ def mesh_for(cells: int, energy: Path, folder: Path) -> tuple[VoronoiMesh, float
 
 def spacing_of(mesh: VoronoiMesh) -> Array:
     """Spacing of each cell (n_cells,), km: that of a hexagon of its area."""
-    return np.sqrt(mesh.area_cell * 2.0 / np.sqrt(3.0)) * EARTH_RADIUS / 1000.0
+    return hexagon_spacing(mesh.area_cell) * EARTH_RADIUS / 1000.0
 
 
 def row_of(mesh: VoronoiMesh, minutes: float | None) -> str:

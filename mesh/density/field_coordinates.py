@@ -35,6 +35,16 @@ QUARTER = 0.5 * np.pi
 LARGEST_LONGITUDE = 4.0 * np.pi
 
 
+def named_variable(file: netCDF4.Dataset, name: str, path: Path) -> netCDF4.Variable:
+    """The variable of this name in an open file; raises `MeshError` where there is none."""
+    if name not in file.variables:
+        raise MeshError(
+            f"{path}: there is no variable named {name}; name one of those that it has, which are "
+            f"{', '.join(file.variables)}"
+        )
+    return file[name]
+
+
 class Coordinate(NamedTuple):
     """Values, in radians, with the name of their variable and its dimensions."""
 

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from mesh.arrays import Array
-from mesh.density.field_coordinates import read_coordinates, read_numbers
+from mesh.density.field_coordinates import named_variable, read_coordinates, read_numbers
 from mesh.density.grid_interpolation import density_on_grid
 from mesh.density.named import NAMED, Density
 from mesh.density.scaling import SAFE_EXPONENT
@@ -136,12 +136,7 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
         raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
     try:
         with dataset(path) as file:
-            if variable not in file.variables:
-                raise MeshError(
-                    f"{path}: there is no variable named {variable}; name one of those that it has, which are "
-                    f"{', '.join(file.variables)}"
-                )
-            field = _read_field(file, file[variable], path)
+            field = _read_field(file, named_variable(file, variable, path), path)
     except (OSError, RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, MeshError):
             raise

@@ -10,10 +10,9 @@ from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 
 from mesh.arrays import Array, Index, Signs
+from mesh.graphs import connected_parts
 from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 
@@ -35,17 +34,11 @@ def boundary_vertices(mesh: Topology) -> NDArray[np.bool_]:
 
 def seas_and_coasts(mesh: Topology) -> tuple[int, int]:
     """How many connected seas the cells of a mesh form, and how many closed coasts the walls do."""
-    is_wall = np.zeros(mesh.n_edges, np.bool_)
-    is_wall[(mesh.cells_on_edge < 0).any(axis=1)] = True
-    _, coast = _components(mesh.n_vertices, mesh.vertices_on_edge[is_wall])
-    return _components(mesh.n_cells, mesh.cells_on_edge[~is_wall])[0], len(np.unique(coast[boundary_vertices(mesh)]))
-
-
-def _components(size: int, pairs: Index) -> tuple[int, Index]:
-    """Number of connected components of the graph of `pairs` (n, 2) on so many nodes, and that of each node."""
-    graph = coo_matrix((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
-    count, component = connected_components(graph, directed=False)
-    return int(count), component
+    is_wall = (mesh.cells_on_edge < 0).any(axis=1)
+    _, coast = connected_parts(mesh.n_vertices, mesh.vertices_on_edge[is_wall])
+    return connected_parts(mesh.n_cells, mesh.cells_on_edge[~is_wall])[0], len(
+        np.unique(coast[boundary_vertices(mesh)])
+    )
 
 
 def shares_of_circulation(mesh: VoronoiMesh, wall_slip: float) -> Array:

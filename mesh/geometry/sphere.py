@@ -73,6 +73,11 @@ def fibonacci_points(count: int) -> Array:
     return np.stack([radius * np.cos(longitude), radius * np.sin(longitude), z], axis=1)
 
 
+def hexagon_spacing(area: Array) -> Array:
+    """Distance between neighbours where cells are plane hexagons of these areas (n,), in the unit of their root."""
+    return np.sqrt(area * 2.0 / np.sqrt(3.0))
+
+
 def mean_spacing(n_cells: int) -> float:
     """Distance (radians) between neighbours if all cells were equal plane hexagons."""
     return float(np.sqrt(8.0 * np.pi / (np.sqrt(3.0) * n_cells)))

@@ -4,12 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from mesh.arrays import Index
 from mesh.errors import MeshError
 from mesh.geometry.sphere import normalize
+from mesh.graphs import connected_parts
 from mesh.parts.culling import culled
 from mesh.regions.find import find_region
 from mesh.regions.region import Region
@@ -25,7 +24,7 @@ NO_CHANNEL = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class SeaCells:
+class CulledSea:
     """Which cells (n_cells,) a sea keeps, and what was left out of its region.
 
     `channel_cells` counts the cells of channels, `lakes` the connected parts besides the largest, and `lake_cells`
@@ -50,7 +49,7 @@ def cull_mesh(
     return culled(mesh, sea_cells(mesh, region, keep_lakes=keep_lakes, keep_channels=keep_channels).kept)
 
 
-def sea_cells(mesh: VoronoiMesh, region: Region, *, keep_lakes: bool = False, keep_channels: bool = False) -> SeaCells:
+def sea_cells(mesh: VoronoiMesh, region: Region, *, keep_lakes: bool = False, keep_channels: bool = False) -> CulledSea:
     """The cells of `mesh` whose centres lie in `region`: the largest connected sea, without channels.
 
     A cell is part of a channel where it has fewer than two kept neighbours, or where these stand in more than one row
@@ -73,7 +72,7 @@ def sea_cells(mesh: VoronoiMesh, region: Region, *, keep_lakes: bool = False, ke
         )
     kept = open_sea if keep_lakes else seas == sizes.argmax()
     lost = len(sizes) - 1
-    return SeaCells(
+    return CulledSea(
         kept,
         channel_cells=int(np.count_nonzero(inside & ~open_sea)),
         lakes=0 if keep_lakes else lost,
@@ -104,11 +103,9 @@ def connected_seas(mesh: VoronoiMesh, kept: Marks) -> tuple[Index, Index]:
     """
     pairs = mesh.cells_on_edge[(mesh.cells_on_edge >= 0).all(axis=1)]
     pairs = pairs[kept[pairs].all(axis=1)]
-    size = mesh.n_cells
-    graph = coo_array((np.ones(len(pairs), bool), (pairs[:, 0], pairs[:, 1])), shape=(size, size))
-    numbers = connected_components(graph, directed=False)[1]
+    numbers = connected_parts(mesh.n_cells, pairs)[1]
     used, number = np.unique(numbers[kept], return_inverse=True)
-    seas = np.full(size, -1, np.intp)
+    seas = np.full(mesh.n_cells, -1, np.intp)
     seas[kept] = number
     return seas, np.bincount(number, minlength=len(used))
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
-from mesh.density.field_coordinates import read_coordinates, read_numbers
+from mesh.density.field_coordinates import named_variable, read_coordinates, read_numbers
 from mesh.errors import MeshError
 from mesh.geometry.angles import degrees_eastward
 from mesh.geometry.sphere import to_lonlat
@@ -38,12 +38,7 @@ def read_gridded(path: Path, name: str) -> Region:
         raise MeshError(f"{path}: there is no such file; give a NetCDF file with a mask or a signed distance")
     try:
         with dataset(path) as file:
-            if name not in file.variables:
-                raise MeshError(
-                    f"{path}: there is no variable named {name}; name one of those that it has, which are "
-                    f"{', '.join(file.variables)}"
-                )
-            longitude, latitude, values = _read(file, file[name], path)
+            longitude, latitude, values = _read(file, named_variable(file, name, path), path)
     except (OSError, RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, MeshError):
             raise

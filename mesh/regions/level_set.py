@@ -10,11 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from mesh.arrays import Array, Index, sum_by_index
 from mesh.geometry.sphere import arc_length, normalize, triangle_area
+from mesh.graphs import connected_parts
 
 CORNERS = np.concatenate([np.eye(3), -np.eye(3)])
 """Corners (6, 3) of the octahedron."""
@@ -140,9 +139,7 @@ def _seas(found: _Triangles, positive: NDArray[np.bool_]) -> tuple[Index, Array]
     triangles = np.concatenate([found.whole, found.crossed])
     sides = _sides(triangles)
     sides = sides[positive[sides[:, 0]] == positive[sides[:, 1]]]
-    size = len(found.points)
-    graph = coo_array((np.ones(len(sides), bool), (sides[:, 0], sides[:, 1])), shape=(size, size))
-    count, sea_of = connected_components(graph, directed=False)
+    count, sea_of = connected_parts(len(found.points), sides)
     third = np.abs(triangle_area(*(found.points[corner] for corner in triangles.T))) / 3.0
     return sea_of.astype(np.intp), sum_by_index(sea_of[triangles], np.repeat(third[:, None], 3, axis=1), count)
 

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.geometry.sphere import hexagon_spacing
 from mesh.overlap.overlaps import overlaps_of
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.adaptation.energy_density import AVERAGED_SHARE, asked_spacing, time_mean
@@ -43,7 +44,7 @@ class Window:
     @cached_property
     def spacing(self) -> Array:
         """Spacing of each cell (n_cells,), m: that of a hexagon of its area."""
-        return np.sqrt(self.run.mesh.area_cell * 2.0 / np.sqrt(3.0))
+        return hexagon_spacing(self.run.mesh.area_cell)
 
 
 def windows(plan: Plan, made: Adaptation) -> list[Window]:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.discrete.walls import boundary_vertices
 from swe.diagnostics import integral_kernels
 from swe.equations.model import Diagnosis, ShallowWaterModel
 from swe.equations.terms import Term
@@ -227,7 +228,7 @@ def _work_of_forces(
 
 def _enstrophy_from_coasts(model: ShallowWaterModel, bernoulli: Array, q: Array) -> float:
     """What minus the gradient of the Bernoulli function does to potential enstrophy, where its paths end at walls."""
-    mesh, coast = model.closed, np.flatnonzero((model.mesh.cells_on_vertex < 0).any(axis=1))
+    mesh, coast = model.closed, np.flatnonzero(boundary_vertices(model.mesh))
     if not anywhere(model.processes, len(coast)):
         return 0.0
     first, second = np.moveaxis(mesh.cells_on_edge[mesh.edges_on_vertex[coast]], -1, 0)

@@ -51,3 +51,6 @@ Recompute = Annotated[
     bool,
     typer.Option("--recompute-metrics", help="Rebuild the file's lengths, areas and weights from its generators."),
 ]
+FileFormat = Annotated[
+    str, typer.Option("--format", help="netcdf4; for programs without HDF5, cdf5 or classic (with 64-bit offsets).")
+]

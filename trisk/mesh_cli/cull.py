@@ -5,7 +5,7 @@ from typing import Annotated
 
 import typer
 
-from trisk.cli.options import Quiet, Recompute
+from trisk.cli.options import FileFormat, Quiet, Recompute
 
 
 def cull(
@@ -23,10 +23,7 @@ def cull(
     keep_lakes: Annotated[bool, typer.Option("--keep-lakes", help="Keep all seas, not only the largest.")] = False,
     keep_channels: Annotated[bool, typer.Option("--keep-channels", help="Keep channels of one cell's width.")] = False,
     recompute_metrics: Recompute = False,
-    file_format: Annotated[
-        str,
-        typer.Option("--format", help="netcdf4; for programs without HDF5, cdf5 or classic (with 64-bit offsets)."),
-    ] = "netcdf4",
+    file_format: FileFormat = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
     """Keep the cells of a mesh whose centres lie in a region, with walls along its coast."""

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from trisk.cli.options import Quiet
+from trisk.cli.options import FileFormat, Quiet
 
 if TYPE_CHECKING:
     from mesh.generation.checkpoint import CheckpointKeeper
@@ -110,10 +110,7 @@ def mesh(
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue from the checkpoint of an interrupted call.")
     ] = False,
-    file_format: Annotated[
-        str,
-        typer.Option("--format", help="netcdf4; for programs without HDF5, cdf5 or classic (with 64-bit offsets)."),
-    ] = "netcdf4",
+    file_format: FileFormat = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
     """Generate a spherical centroidal Voronoi mesh."""

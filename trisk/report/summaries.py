@@ -12,7 +12,7 @@ from rich.table import Table
 from mesh import VoronoiMesh
 from mesh.discrete.quality import quality_and_note
 from mesh.generation.well_centered import WellCentered
-from mesh.parts.sea_cells import SeaCells
+from mesh.parts.sea_cells import CulledSea
 from swe.output.files import DIAGNOSTICS_FILE, load_record, read_series
 
 
@@ -43,7 +43,7 @@ def tell_of_centring(centring: WellCentered) -> None:
     )
 
 
-def tell_of_sea(sea: SeaCells) -> None:
+def tell_of_sea(sea: CulledSea) -> None:
     """Print, in a line, how many cells of a mesh a sea has and what was left out of its region."""
     typer.echo(
         f"kept {np.count_nonzero(sea.kept)} of {sea.kept.size} cells; left out of the region {sea.channel_cells} "
