@@ -1,7 +1,9 @@
 """The energy along the increment of a step: coefficients of c, c^2 and c^3 of E(h + c p, u + c v) - E(h, u).
 
-They are sums in any order (`swe.parallel.folding`). The letters are those of `swe.equations.kernels`; the increments p
-and v lead to `h_after` and `u_after`, and heights are measured from any level.
+They are sums in any order (`swe.parallel.folding`), so that the bits of a term must not depend on its place: where the
+compiler may fuse one of the products in a b + c d, loops over vectors and what is left of them choose differently. The
+letters are those of `swe.equations.kernels`; the increments p and v lead to `h_after` and `u_after`, and heights are
+measured from any level.
 """
 
 import numba
@@ -13,8 +15,8 @@ from swe.parallel.folding import add_all
 CHUNK = 256
 """Number of terms summed together; they stay in the first-level cache."""
 
-inlined = numba.njit(error_model="numpy", fastmath={"contract"}, forceinline=True)
-compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath={"contract"})
+inlined = numba.njit(error_model="numpy", fastmath=False, forceinline=True)
+compiled = numba.njit(cache=True, parallel=True, error_model="numpy", fastmath=False)
 
 
 @inlined
