@@ -12,11 +12,12 @@ from typing import TextIO, cast
 
 import typer
 
-from trisk.cli import adapt, bench, cases, compare, plot, reference, run, spectra, study
+from trisk.cli import adapt, bench, cases, reference, run, study
 from trisk.mesh_cli import cull, mesh, partition, quality
 from trisk.processes.launch import launch_of
 from trisk.processes.together import run_together
 from trisk.report.streams import ErrorOutput
+from trisk.results_cli import compare, plot, spectra
 
 COMMANDS = (
     *(mesh.mesh, cull.cull, quality.quality, partition.partition, run.run, cases.cases, plot.plot, spectra.spectra),
