@@ -76,6 +76,8 @@ $(STUDY)/jet-%.done: runs/mesh.%.nc
 reliability: $(VENV)/installed-dev  ## The tables of docs/reliability.md made anew; half an hour
 	$(BIN)/python tests/reliability/conservation.py runs/reliability
 	$(BIN)/python -m tests.reliability.closed_sea 10242
+	$(BIN)/python -m tests.reliability.closed_sea 10242 world-ocean
+	$(BIN)/python -m tests.reliability.closed_sea 10242 north-atlantic
 	$(BIN)/python tests/reliability/kill_runs.py 20
 	$(BIN)/python tests/reliability/mutate_meshes.py 2000
 

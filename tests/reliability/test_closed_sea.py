@@ -4,9 +4,12 @@ import numpy as np
 import pytest
 
 from mesh import VoronoiMesh
+from mesh.coast.generation import region_mesh
 from mesh.discrete.walls import wall_edges
+from mesh.mesh_request import MeshRequest
+from mesh.regions.find import find_region
 from tests.cut_mesh import random_sea
-from tests.reliability.closed_sea import OPTIONS, speed_at_rest, turbulence
+from tests.reliability.closed_sea import IN_REAL_SEAS, OPTIONS, REAL_SEA_EDDIES, speed_at_rest, turbulence
 
 
 @pytest.fixture(scope="module")
@@ -39,3 +42,15 @@ def test_free_turbulence_keeps_mass_and_energy(sea: VoronoiMesh, options: str, d
     assert not simulation.state.normal_velocity[wall_edges(sea)].any()
     assert np.abs(simulation.state.normal_velocity).max() > 5.0
     assert simulation.loops == "fused"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("options", IN_REAL_SEAS)
+@pytest.mark.parametrize("region", ["world-ocean", "north-atlantic"])
+def test_real_seas_keep_rest_mass_and_energy(region: str, options: str) -> None:
+    sea = region_mesh(find_region(region), MeshRequest(cells=2562, tolerance=1e-4))
+    assert 0.0 < speed_at_rest(sea, 10.0, **OPTIONS[options]) < 1e-11
+    simulation, worst = turbulence(sea, 5.0, REAL_SEA_EDDIES, **OPTIONS[options])
+    assert worst["mass"] < 1e-14
+    assert worst["total_energy"] < 1e-14
+    assert np.abs(simulation.state.normal_velocity).max() > 5.0
