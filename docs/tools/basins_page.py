@@ -1,13 +1,13 @@
-"""Closed basins with staircase coasts, for docs/verification.md: python docs/tools/basins_page.py [MOST_CELLS].
+"""Closed basins, for docs/verification.md and docs/coasts.md: python docs/tools/basins_page.py [MOST_CELLS].
 
 Gyres of Stommel and Munk beside their solutions, the frequency of the seiche, and the speed of the Kelvin wave along
-coasts that make different angles with the rows of cells. Meshes of the whole sphere with up to MOST_CELLS cells, 163842
-where not given, are cut.
+coasts that make different angles with the rows of cells; first on staircases, then on cells that the coast clips.
+Meshes of the whole sphere with up to MOST_CELLS cells, 163842 where not given, are cut, and as many cells fill basins.
 """
 
 import math
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import cast
 
@@ -18,8 +18,14 @@ from cases.basins import Basin, Wave
 from cases.gyres import Gyre
 from mesh import VoronoiMesh, mesh_from_points, scvt_mesh
 from mesh.arrays import Array
+from mesh.coast.coastline import Coastline
+from mesh.coast.generation import converge_at_sea, region_mesh
+from mesh.coast.sea_mesh import sea_mesh
+from mesh.generation.optimizer import Limits
 from mesh.geometry.sphere import fibonacci_points, from_lonlat
+from mesh.mesh_request import MeshRequest
 from mesh.parts.cutting import without_cells
+from mesh.regions.find import find_region
 from postprocess.compare.norms import scalar_norms
 from swe import Simulation
 from swe.constants import SECONDS_PER_DAY
@@ -33,6 +39,9 @@ NORTHERN_COAST = 0.6
 
 GYRE_DAYS = {"stommel": 12.0, "munk": 8.0}
 """Days after which the error stays the same."""
+
+COAST_POINTS = 4037
+"""Of each coast of the filled channel: a prime, so that no side of a cell meets the coast in one of its points."""
 
 PERIODS = 3.0
 """Of the seiche, over which its frequency is taken."""
@@ -77,6 +86,30 @@ def channel(angle: int, refinement: float = 1.0) -> VoronoiMesh:
     mesh = mesh_from_points(np.vstack([from_lonlat(x, np.arcsin(np.tanh(y))), rest]))
     at = np.arctanh(np.clip(np.sin(mesh.lat_cell), -0.999, 0.999))
     return without_cells(mesh, (at < 0.0) | (at > NORTHERN_COAST))
+
+
+def filled(case: Basin, cells: int) -> VoronoiMesh:
+    """The basin of a gyre or a seiche, filled up to its coast with `cells` cells."""
+    return region_mesh(
+        find_region("-180,180,0,90" if isinstance(case, Wave) else "0,60,10,50"), MeshRequest(cells=cells)
+    )
+
+
+def filled_channel(angle: int, refinement: float = 1.0) -> VoronoiMesh:
+    """The basin of `channel` filled up to both coasts, from its cells, which keep their rows away from the coasts."""
+    north = math.asin(math.tanh(NORTHERN_COAST))
+    east = 2.0 * math.pi * np.arange(COAST_POINTS) / COAST_POINTS + 1e-4
+    coast = Coastline([from_lonlat(east, np.zeros(COAST_POINTS)), from_lonlat(-east, np.full(COAST_POINTS, north))])
+    cells = channel(angle, refinement)
+    ashore = 0.1 * math.sqrt(coast.area / cells.n_cells)
+    points = from_lonlat(cells.lon_cell, np.clip(cells.lat_cell, ashore, north - ashore))
+    found = converge_at_sea(coast, points, density=as_in_the_map, limits=Limits(tolerance=1e-4))
+    return sea_mesh(found.sea, found.result.points, as_in_the_map)
+
+
+def as_in_the_map(points: Array) -> Array:
+    """The density of cells that are equal in Mercator's map, to 45 degrees of latitude."""
+    return np.maximum(1.0 - points[:, 2] ** 2, 0.5) ** -2.0
 
 
 def gyre_error(mesh: VoronoiMesh, case: Gyre, days: float) -> float:
@@ -143,49 +176,57 @@ def kelvin_error(mesh: VoronoiMesh, case: KelvinWave, days: float = 5.0) -> tupl
     return phase[-1] / (rate * track.times[-1]) - 1.0, float(np.abs(track.values[-1] / track.values[0]))
 
 
-def gyre_lines(meshes: dict[int, VoronoiMesh]) -> Iterator[str]:
-    """Errors of both gyres, and their orders from mesh to mesh."""
-    yield "| case | cells of the sphere | of the sea | cells across the layer | l2(height of the surface) | order |"
+def gyre_lines(meshes: dict[Gyre, dict[int, VoronoiMesh]]) -> Iterator[str]:
+    """Errors of gyres on meshes by their number of cells, and their orders from mesh to mesh."""
+    yield "| case | cells of the mesh | of the sea | cells across the layer | l2(height of the surface) | order |"
     yield "|---|---|---|---|---|---|"
-    for case in (Stommel(), Munk()):
+    for case, basins in meshes.items():
         last: tuple[float, float] | None = None
-        for cells, whole in meshes.items():
-            mesh = basin_of(whole, case)
+        for cells, mesh in basins.items():
             across, error = cells_across(mesh, case), gyre_error(mesh, case, GYRE_DAYS[case.name])
             order = "" if last is None else f"{math.log(last[1] / error) / math.log(across / last[0]):.2f}"
             yield f"| `{case.name}` | {cells} | {mesh.n_cells} | {across:.1f} | {error:.4f} | {order} |"
             last = across, error
 
 
-def seiche_lines(meshes: dict[int, VoronoiMesh]) -> Iterator[str]:
-    """Errors of the frequency of two seiches."""
-    yield "| cells of the sphere | of the sea | frequency, degree 2 order 0 (%) | degree 1 order 1 (%) |"
+def seiche_lines(basins: dict[int, VoronoiMesh]) -> Iterator[str]:
+    """Errors of the frequency of two seiches on meshes by their number of cells."""
+    yield "| cells of the mesh | of the sea | frequency, degree 2 order 0 (%) | degree 1 order 1 (%) |"
     yield "|---|---|---|---|"
-    for cells, whole in meshes.items():
-        mesh = basin_of(tilted(whole, 0.7), Seiche())
+    for cells, mesh in basins.items():
         errors = [seiche_error(mesh, Seiche(degree=degree, order=order)) for degree, order in ((2, 0), (1, 1))]
-        yield f"| {cells} | {mesh.n_cells} | " + " | ".join(f"{100.0 * error:+.2f}" for error in errors) + " |"
+        yield f"| {cells} | {mesh.n_cells} | " + " | ".join(f"{100.0 * error:+.3f}" for error in errors) + " |"
 
 
-def kelvin_lines(refinements: tuple[float, ...]) -> Iterator[str]:
-    """Errors of the speed of the Kelvin wave by angle and spacing."""
+def kelvin_lines(refinements: tuple[float, ...], basin: Callable[[int, float], VoronoiMesh]) -> Iterator[str]:
+    """Errors of the speed of the Kelvin wave by angle and spacing, in `basin` by both."""
     yield "| cells across c/f | coast at 0 degrees (%) | 15 degrees (%) | 30 degrees (%) |"
     yield "|---|---|---|---|"
     case = KelvinWave()
     radius_of_deformation = case.speed / (2.0 * case.rotation_rate * case.radius)
     for refinement in refinements:
-        errors = [kelvin_error(channel(angle, refinement), case) for angle in LATTICES]
+        errors = [kelvin_error(basin(angle, refinement), case) for angle in LATTICES]
         across = radius_of_deformation * 240 * refinement / (2.0 * math.pi)
-        shown = " | ".join(f"{100.0 * error:+.2f} (height {left:.3f})" for error, left in errors)
+        shown = " | ".join(f"{100.0 * error:+.2f} (height {left:.4f})" for error, left in errors)
         yield f"| {across:.1f} | {shown} |"
 
 
 def main() -> None:
     """Print the tables."""
     most = int(sys.argv[1]) if sys.argv[1:] else 163842
-    meshes = {cells: scvt_mesh(cells) for cells in (10242, 40962, 163842) if cells <= most}
-    small = {cells: scvt_mesh(cells) for cells in (2562, 10242) if cells <= most}
-    for lines in (gyre_lines(meshes), seiche_lines(small), kelvin_lines((0.5, 1.0, 2.0))):
+    whole = {cells: scvt_mesh(cells) for cells in (2562, 10242, 40962, 163842) if cells <= most}
+    gyres = (Stommel(), Munk())
+    cut = {case: {n: basin_of(mesh, case) for n, mesh in whole.items() if n > 2562} for case in gyres}
+    turned = {n: basin_of(tilted(mesh, 0.7), Seiche()) for n, mesh in whole.items() if n <= 10242}
+    boxes = {n: filled(Stommel(), n) for n in (390, 1560, 6240) if n <= most}
+    hemispheres = {n: filled(Seiche(), n) for n in (1281, 2562, 5121) if n <= most}
+    refinements = (0.5, 1.0, 2.0)
+    tables = (
+        *(gyre_lines(cut), seiche_lines(turned), kelvin_lines(refinements, channel)),
+        *(gyre_lines(dict.fromkeys(gyres, boxes)), seiche_lines(hemispheres)),
+        kelvin_lines(refinements, filled_channel),
+    )
+    for lines in tables:
         for line in lines:
             print(line, flush=True)
         print()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from basins_page import LATTICES, basin_of, channel, kelvin_error, seiche_error, tilted
+from basins_page import LATTICES, basin_of, channel, filled, filled_channel, kelvin_error, seiche_error, tilted
 from cases import KelvinWave, Seiche
 from cases.basins import Wave
 from cases.differences import gradient
@@ -100,6 +100,32 @@ def test_the_speed_of_the_kelvin_wave_along_staircases(angle: int) -> None:
     error, left = kelvin_error(mesh, KelvinWave())
     assert -0.12 < error < -0.04
     assert 0.98 < left < 1.01
+
+
+@pytest.mark.parametrize("angle", LATTICES)
+def test_cells_that_the_coast_clips_hardly_slow_the_kelvin_wave(angle: int) -> None:
+    """By 1 percent where staircases slow it by 6 to 10."""
+    mesh = filled_channel(angle, 0.5)
+    assert mesh.n_cells == channel(angle, 0.5).n_cells
+    error, left = kelvin_error(mesh, KelvinWave())
+    assert -0.013 < error < -0.008
+    assert 0.998 < left < 1.003
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("angle", LATTICES)
+def test_the_speed_of_the_kelvin_wave_converges_with_order_two(angle: int) -> None:
+    """Nearly: 1.75 at least from two to four cells across the radius of deformation."""
+    coarse, fine = (kelvin_error(filled_channel(angle, refinement), KelvinWave())[0] for refinement in (0.5, 1.0))
+    assert 3.3 < coarse / fine < 4.5
+
+
+@pytest.mark.slow
+def test_the_frequency_of_any_seiche_on_cells_that_the_coast_clips() -> None:
+    """Within half a percent, also where the flow along the coast is strongest: 2562 cells are in the sea."""
+    mesh = filled(Seiche(), 2562)
+    for degree, order in ((2, 0), (1, 1)):
+        assert abs(seiche_error(mesh, Seiche(degree=degree, order=order))) < 0.001
 
 
 def test_waves_want_half_a_sphere(larger_mesh: VoronoiMesh) -> None:

@@ -1,7 +1,8 @@
 """A closed sea with islands: rest stays rest, and free turbulence keeps mass and energy.
 
-`python -m tests.reliability.closed_sea CELLS` prints the table of docs/reliability.md for a random sea, in some minutes,
-and `python -m tests.reliability.closed_sea CELLS REGION` that for so many cells that fill a real sea up to its coast.
+`python -m tests.reliability.closed_sea CELLS` prints the table of docs/reliability.md for a random sea, in some
+minutes, and `python -m tests.reliability.closed_sea CELLS REGION` that for CELLS cells that fill a real sea up to its
+coast.
 """
 
 import sys
