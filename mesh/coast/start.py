@@ -5,6 +5,7 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.coast.coastline import Coastline
 from mesh.density.named import Density, density_at, uniform
+from mesh.density.scaling import PROBES
 from mesh.errors import MeshError
 from mesh.generation.generators import DEFAULT_SEED, random_points
 from mesh.geometry.sphere import fibonacci_points
@@ -36,7 +37,7 @@ def starting_points(
     """Points (cells, 3) in the sea, along a space-filling curve: on the Fibonacci spiral, or drawn from the density.
 
     `start` is `fibonacci`, `random` (drawn from the density) or `random-root` (from its square root, which converges
-    sooner). Raises `MeshError` for fewer than 12 cells or an unknown start.
+    sooner). Raises `MeshError` for fewer than 12 cells, an unknown start, or a density that is zero at sea.
     """
     if cells < FEWEST_CELLS:
         raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {FEWEST_CELLS}")
@@ -69,4 +70,8 @@ def _drawn(coastline: Coastline, cells: int, density: Density, power: float, see
         values = density_at(density, points) ** power
         return np.where(coastline.contains(points), values, 0.0)
 
+    if not at_sea(fibonacci_points(PROBES)).any():
+        raise MeshError(
+            "the density is zero wherever it was tried at sea; give one that is positive there, or a floor above zero"
+        )
     return random_points(cells, at_sea, generator)

@@ -99,10 +99,14 @@ def read_numbers(variable: netCDF4.Variable, path: str | Path) -> Array:
     if variable.dtype is str or variable.dtype.kind not in "iuf":
         raise MeshError(f"{path}: {variable.name} holds {variable.dtype} instead of numbers")
     values = np.ma.filled(np.ma.asarray(variable[:]).astype(float), np.nan)
-    wrong = np.count_nonzero(~np.isfinite(values))
-    if wrong or not values.size:
+    wrong = np.argwhere(~np.isfinite(values))
+    if not values.size:
+        raise MeshError(f"{path}: {variable.name} holds no values; fill it")
+    if len(wrong):
+        place = ", ".join(f"{name}={row}" for name, row in zip(variable.dimensions, wrong[0], strict=True))
         raise MeshError(
-            f"{path}: {wrong} of {values.size} values of {variable.name} are missing or not finite; fill them"
+            f"{path}: {len(wrong)} of {values.size} values of {variable.name} are missing or not finite, the first at "
+            f"{place}, counted from 0; fill them, those on land too"
         )
     return values
 
