@@ -20,7 +20,7 @@ from swe.errors import InputError
 
 @dataclass(frozen=True)
 class FieldColours:
-    """Palettes of a field, by name: `one_sign` where all its values have one, else `both_signs`, with zero in the middle.
+    """Palettes of a field: `one_sign` where all its values have one, else `both_signs`, with zero in the middle.
 
     With `from_zero`, for magnitudes, values of one sign are coloured from zero on.
     """

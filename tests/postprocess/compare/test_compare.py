@@ -366,10 +366,8 @@ def test_maps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_maps_have_one_scale_and_say_what_it_is() -> None:
     x = np.linspace(-1.0, 3.0, compare_maps.ROWS * compare_maps.COLUMNS)
     panels = [x, x - 7.0, 0 * x]
-    for colours, limits in (
-        (colours_for("thickness", [panel + 9.0 for panel in panels]), (1.0, 12.0)),
-        (deviation_colours(panels), (-8.0, 8.0)),
-    ):
+    scales = (colours_for("thickness", [panel + 9.0 for panel in panels]), deviation_colours(panels))
+    for colours, limits in zip(scales, [(1.0, 12.0), (-8.0, 8.0)], strict=True):
         figure = compare_maps.map_figure(panels, ["one", "two", "three"], "Heading", "label (m)", colours)
         images = [image for axes in figure.axes for image in axes.get_images()]
         assert [image.get_clim() for image in images] == [limits] * 3
