@@ -5,7 +5,7 @@ from typing import Any
 
 _PLACES = {
     "compare_runs": "postprocess.compare.comparison",
-    "open_run": "postprocess.runs.reading",
+    "open_run": "postprocess.interactive.opened_run",
     "plot_field": "postprocess.figures.field_map",
 }
 

@@ -7,10 +7,8 @@ its own to them.
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
-from matplotlib.colors import CenteredNorm, Normalize
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
@@ -18,6 +16,7 @@ from mesh.safe_files import AnyPath
 from postprocess.compare.comparison import Comparison, fields_of, fields_on
 from postprocess.compare.solutions import RunSolution, Solution
 from postprocess.figures.maps import CENTRAL_LONGITUDE, draw_mollweide_raster
+from postprocess.figures.palettes import Colours, colours_for, deviation_colours
 from postprocess.figures.plots import DOTS_PER_INCH
 from postprocess.figures.projections import mollweide_raster
 from postprocess.runs.folders import prepared_folder
@@ -26,34 +25,32 @@ ROWS, COLUMNS = 360, 720
 """Pixels of the maps."""
 
 
-Scale = Literal["range", "from zero", "symmetric"]
-"""Colours from the lowest value to the highest; from zero, for magnitudes; or blue to red with white at zero."""
-
-
 @dataclass(frozen=True)
 class MapField:
-    """A field on maps: its title, its unit in SI units, and what the colour bars of it and of its difference show."""
+    """A field on maps: its title, its unit in SI units, and what the colour bars of it and of its difference show.
+
+    `colours` is its name in `postprocess.figures.palettes`, and so is `error_colours` where differences are magnitudes.
+    """
 
     title: str
     unit: float
     label: str
-    scale: Scale
+    colours: str
     difference_label: str
-    difference_scale: Scale
+    error_colours: str = ""
 
 
 MAP_FIELDS = {
-    "thickness": MapField("Thickness", 1.0, "thickness (m)", "range", "difference in thickness (m)", "symmetric"),
+    "thickness": MapField("Thickness", 1.0, "thickness (m)", "thickness", "difference in thickness (m)"),
     "velocity": MapField(
-        "Velocity", 1.0, "speed (m s⁻¹)", "from zero", "length of the difference in velocity (m s⁻¹)", "from zero"
+        "Velocity", 1.0, "speed (m s⁻¹)", "speed", "length of the difference in velocity (m s⁻¹)", "velocity_error"
     ),
     "vorticity": MapField(
         "Relative vorticity",
         1e-5,
         "relative vorticity (10⁻⁵ s⁻¹)",
-        "symmetric",
+        "relative_vorticity",
         "difference in relative vorticity (10⁻⁵ s⁻¹)",
-        "symmetric",
     ),
 }
 
@@ -75,11 +72,11 @@ def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
     for name, field in MAP_FIELDS.items():
         heading = f"{field.title}: {comparison.case}, day {day:g}"
         panels = [each[name] / field.unit for each in values]
-        figure = map_figure(panels, names, heading, field.label, field.scale)
+        figure = map_figure(panels, names, heading, field.label, colours_for(field.colours, panels))
         paths.append(_save(figure, folder, f"compare_{name}_day{day:g}"))
         panels = [each[name] / field.unit for each in differences]
         heading += f"\ndifference from the reference, {reference.name}"
-        figure = map_figure(panels, names[1:], heading, field.difference_label, field.difference_scale)
+        figure = map_figure(panels, names[1:], heading, field.difference_label, _colours_of_errors(field, panels))
         paths.append(_save(figure, folder, f"compare_{name}_difference_day{day:g}"))
     return paths
 
@@ -110,15 +107,14 @@ def _differences(ours: RunSolution, solution: Solution, longitude: Array, latitu
     }
 
 
-def map_figure(panels: list[Array], titles: list[str], heading: str, label: str, scale: Scale) -> Figure:
+def map_figure(panels: list[Array], titles: list[str], heading: str, label: str, colours: Colours) -> Figure:
     """One map for each of `panels` with one colour scale; up to two maps beside each other."""
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
     figure = Figure(figsize=(6.6 * columns, 3.5 * rows + 1.0), layout="constrained")
     grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
-    options = _colours(panels, scale)
     for axes, title, values in zip(grid, titles, panels, strict=False):
-        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), options).images[-1]
+        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), colours.options).images[-1]
         axes.set_title(title, fontsize=9)
     for axes in grid[len(panels) :]:
         axes.axis("off")
@@ -127,9 +123,5 @@ def map_figure(panels: list[Array], titles: list[str], heading: str, label: str,
     return figure
 
 
-def _colours(panels: list[Array], scale: Scale) -> dict:
-    """Colours of all `panels`."""
-    lowest, highest = min(values.min() for values in panels), max(values.max() for values in panels)
-    if scale == "symmetric":
-        return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=max(-lowest, highest) or 1.0)}
-    return {"cmap": "viridis", "norm": Normalize(0.0 if scale == "from zero" else lowest, highest)}
+def _colours_of_errors(field: MapField, panels: list[Array]) -> Colours:
+    return colours_for(field.error_colours, panels) if field.error_colours else deviation_colours(panels)

@@ -5,13 +5,16 @@ from typing import Literal, get_args
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import Collection
-from matplotlib.colors import CenteredNorm, Colormap, Normalize
+from matplotlib.colorbar import Colorbar
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.ticker import ScalarFormatter
 
 from mesh.arrays import Array
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.maps import draw_mollweide, draw_orthographic
-from postprocess.figures.shown_fields import ShownField, given_field, mesh_field, snapshot_field
+from postprocess.figures.palettes import colours_for
+from postprocess.figures.shown_fields import ShownField, given_field, given_to_run, mesh_field, snapshot_field
 from postprocess.figures.windows import Window, draw_cylindrical, draw_orthographic_window
 from postprocess.runs.reading import Run, open_run
 from swe.errors import InputError
@@ -20,6 +23,9 @@ Projection = Literal["mollweide", "orthographic", "cylindrical"]
 
 LARGEST = {"mollweide": (360.0, 180.0), "orthographic": (180.0, 180.0), "cylindrical": (360.0, 180.0)}
 """Width and height, degrees, of what a map shows without an extent."""
+
+Region = tuple[float, float, float, float]
+"""West, east, south and north, degrees."""
 
 
 def plot_field(
@@ -30,6 +36,7 @@ def plot_field(
     time: int = -1,
     centre: tuple[float, float] = (0.0, 0.0),
     extent: float | tuple[float, float] | None = None,
+    region: Region | None = None,
     projection: Projection | None = None,
     cmap: str | Colormap | None = None,
     norm: Normalize | None = None,
@@ -39,19 +46,23 @@ def plot_field(
     """Draw a field of a run, or of a mesh, on a map; return the Axes that it is drawn on.
 
     `where` is a run, its directory or a mesh. `field` is the name of a snapshot's field or of an array of the mesh, or
-    values (n,) for each cell, edge or vertex; those at vertices are drawn on triangles, those at edges on the
-    quadrilaterals round them. `time` numbers the snapshots, from the end where it is negative.
+    values (n,) for each cell, edge or vertex, of a run also (snapshots, n); those at vertices are drawn on triangles,
+    those at edges on the quadrilaterals round them. `time` numbers the snapshots, from the end where it is negative.
 
     `centre` is the longitude and latitude, degrees, in the middle of the map, and `extent` the size of the window round
     it, degrees: one number, or width and height. `projection` is "mollweide", the globe on an equal-area map;
     "orthographic", as seen from above `centre`; or "cylindrical", with longitude and latitude as axes. By default it is
-    the first of the globe, and the second with an `extent` or off the equator.
+    the first of the globe, and the second with an `extent` or off the equator. `region` gives a window by its sides
+    instead, (west, east, south, north) in degrees, on the cylindrical projection.
 
-    Colours run over the values on the map, symmetrically where these have both signs, unless `cmap` or `norm` say
-    otherwise. The colour bar has the name and the units of the field, or `label`, and takes its room from `ax`; without
-    `ax`, the map is on a new figure of pyplot. Raises `InputError` where there is no such field, snapshot or window.
+    Colours run over the values on the map, symmetrically where these have both signs, in the palette of the field
+    (`postprocess.figures.palettes`), unless `cmap` or `norm` say otherwise. The colour bar has the name and the units
+    of the field, or `label`, and takes its room from `ax`; without `ax`, the map is on a new figure of pyplot. Raises
+    `InputError` where there is no such field, snapshot or window.
     """
     shown = _shown_field(where, field, time)
+    if region is not None:
+        centre, extent, projection = _box(region, centre, extent, projection)
     chosen = projection or ("mollweide" if extent is None and centre[1] == 0.0 else "orthographic")
     window = _window(chosen, centre, extent)
     if ax is None:
@@ -60,13 +71,13 @@ def plot_field(
         _, ax = plt.subplots(layout="constrained")
     _draw(ax, shown, chosen, window, whole=extent is None)
     drawn = ax.collections[-1]
-    _set_colours(drawn, cmap, norm)
+    _set_colours(drawn, _values_in_view(ax, drawn), shown.name, cmap, norm)
     if shown.title:
         ax.set_title(shown.title)
     if colour_bar:
         figure = ax.get_figure()
         assert figure is not None
-        figure.colorbar(drawn, ax=ax, shrink=0.8, label=shown.label if label is None else label)
+        _print_powers(figure.colorbar(drawn, ax=ax, shrink=0.8, label=shown.label if label is None else label))
     return ax
 
 
@@ -74,7 +85,28 @@ def _shown_field(where: Run | VoronoiMesh | AnyPath, field: str | Array, time: i
     if isinstance(where, VoronoiMesh):
         return mesh_field(where, field) if isinstance(field, str) else given_field(where, field)
     run = where if isinstance(where, Run) else open_run(where)
-    return snapshot_field(run, field, time) if isinstance(field, str) else given_field(run.mesh, field)
+    return snapshot_field(run, field, time) if isinstance(field, str) else given_to_run(run, field, time)
+
+
+def _box(
+    region: Region,
+    centre: tuple[float, float],
+    extent: float | tuple[float, float] | None,
+    projection: Projection | None,
+) -> tuple[tuple[float, float], tuple[float, float], Projection]:
+    """Centre, extent and projection of a `region`; raise `InputError` where there is no such region on a map."""
+    west, east, south, north = region
+    if centre != (0.0, 0.0) or extent is not None or projection not in (None, "cylindrical"):
+        raise InputError(
+            f"a region {region} is drawn between its meridians and parallels, on the cylindrical projection; give it "
+            "without centre and extent, or these without a region"
+        )
+    if not (np.isfinite(region).all() and -90.0 <= south < north <= 90.0 and west != east):
+        raise InputError(
+            f"a map has no region {region}; give west, east, south and north in degrees, south below north"
+        )
+    width = (east - west) % 360.0 or 360.0
+    return (west + 0.5 * width, 0.5 * (south + north)), (width, north - south), "cylindrical"
 
 
 def _window(projection: Projection, centre: tuple[float, float], extent: float | tuple[float, float] | None) -> Window:
@@ -113,11 +145,29 @@ def _draw(axes: Axes, shown: ShownField, projection: Projection, window: Window,
         draw_orthographic_window(axes, shown.mesh, shown.values, {}, window)
 
 
-def _set_colours(drawn: Collection, cmap: str | Colormap | None, norm: Normalize | None) -> None:
-    """Colours over the finite values drawn, from blue to red with white at zero where these have both signs."""
+def _values_in_view(axes: Axes, drawn: Collection) -> Array:
+    """Values of the polygons that reach into the window of the map: those beside it are drawn, but not seen."""
     values = np.asarray(drawn.get_array(), dtype=float)
-    values = values[np.isfinite(values)]
-    lowest, highest = (values.min(), values.max()) if len(values) else (0.0, 1.0)
-    symmetric = lowest < 0.0 < highest
-    usual = CenteredNorm(halfrange=max(-lowest, highest)) if symmetric else Normalize(lowest, highest)
-    drawn.set(cmap=cmap or ("RdBu_r" if symmetric else "viridis"), norm=norm or usual)
+    corners = [np.asarray(path.vertices) for path in drawn.get_paths()]
+    if not corners:
+        return values
+    starts = np.cumsum([0, *(len(each) for each in corners[:-1])])
+    joined = np.concatenate(corners)
+    least, most = np.minimum.reduceat(joined, starts), np.maximum.reduceat(joined, starts)
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    return values[np.all((most > (left, bottom)) & (least < (right, top)), axis=1)]
+
+
+def _set_colours(
+    drawn: Collection, values: Array, name: str, cmap: str | Colormap | None, norm: Normalize | None
+) -> None:
+    """Colours of the field called `name` over the finite `values`, or those of the caller."""
+    usual = colours_for(name, values).options
+    drawn.set(cmap=cmap or usual["cmap"], norm=norm or usual["norm"])
+
+
+def _print_powers(bar: Colorbar) -> None:
+    """Write a power of ten over the colour bar as 10⁻⁸ is written, not as 1e-8."""
+    if isinstance(bar.formatter, ScalarFormatter):
+        bar.formatter.set_useMathText(True)
+        bar.update_ticks()

@@ -4,7 +4,6 @@ from pathlib import Path
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import CenteredNorm, Normalize
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
@@ -13,6 +12,7 @@ from mesh.discrete.quality import mesh_quality, neighbour_distance_ratio, triang
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.maps import draw_mollweide, draw_orthographic
+from postprocess.figures.palettes import colours_for
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
 from swe.constants import SECONDS_PER_DAY
@@ -34,13 +34,21 @@ def plot_run(run: Run, folder: AnyPath) -> list[Path]:
             1e8 * vertex_to_cell(run.mesh, last.fields["potential_vorticity"]),
             f"Potential vorticity: {heading}",
             "potential vorticity (10⁻⁸ m⁻¹ s⁻¹)",
-            symmetric=True,
+            "potential_vorticity",
         ),
         "kinetic_energy": field_figure(
-            run.mesh, last.fields["kinetic_energy"], f"Kinetic energy: {heading}", "kinetic energy (m² s⁻²)"
+            run.mesh,
+            last.fields["kinetic_energy"],
+            f"Kinetic energy: {heading}",
+            "kinetic energy (m² s⁻²)",
+            "kinetic_energy",
         ),
         "surface_height": field_figure(
-            run.mesh, last.fields["surface_height"], f"Surface height: {heading}", "height of the surface (m)"
+            run.mesh,
+            last.fields["surface_height"],
+            f"Surface height: {heading}",
+            "height of the surface (m)",
+            "surface_height",
         ),
         "mesh": mesh_figure(run.mesh),
         "conservation": _conservation_figure(run.series, f"{run.case}, {run.mesh.n_cells} cells"),
@@ -52,15 +60,14 @@ def plot_run(run: Run, folder: AnyPath) -> list[Path]:
     return paths
 
 
-def field_figure(mesh: VoronoiMesh, values: Array, title: str, label: str, symmetric: bool = False) -> Figure:
+def field_figure(mesh: VoronoiMesh, values: Array, title: str, label: str, name: str = "") -> Figure:
     """Cell values on the equal-area global view and on an orthographic one, with one colour bar.
 
-    A `symmetric` field is coloured from blue to red with white at zero.
+    Colours are those of the field called `name`, see `postprocess.figures.palettes.colours_for`.
     """
+    options = colours_for(name, values).options
     figure = Figure(figsize=(12.0, 4.8), layout="constrained")
     wide, round_ = figure.subplots(1, 2, width_ratios=[2.0, 1.0])
-    norm = CenteredNorm(halfrange=float(np.abs(values).max())) if symmetric else Normalize(values.min(), values.max())
-    options = {"cmap": "RdBu_r" if symmetric else "viridis", "norm": norm}
     draw_mollweide(wide, mesh, values, options)
     drawn = draw_orthographic(round_, mesh, values, options).collections[-1]
     figure.colorbar(drawn, ax=[wide, round_], location="bottom", shrink=0.6, aspect=40, label=label)
@@ -75,7 +82,7 @@ def mesh_figure(mesh: VoronoiMesh) -> Figure:
     left, right = np.asarray(figure.subfigures(1, 2, width_ratios=[1.6, 1.0]))
     map_axes = left.subplots()
     area = mesh.area_cell / SQUARE_METRES_PER_SQUARE_KILOMETRE
-    drawn = draw_mollweide(map_axes, mesh, area, {"cmap": "viridis"}).collections[-1]
+    drawn = draw_mollweide(map_axes, mesh, area, colours_for("area_cell", area).options).collections[-1]
     left.colorbar(drawn, ax=map_axes, location="bottom", shrink=0.8, label="area of cells (km²)")
     distributions = (
         (neighbour_distance_ratio(mesh), "σ, shortest over longest neighbour distance", "cells"),

@@ -30,12 +30,16 @@ MESH_FIELDS = {
 
 @dataclass(frozen=True, eq=False)
 class ShownField:
-    """Values (n,) for each cell, edge or vertex of a mesh, their label on a colour bar and the title of their map."""
+    """Values (n,) for each cell, edge or vertex of a mesh, their label on a colour bar and the title of their map.
+
+    Colours are those of the field called `name`, see `postprocess.figures.palettes`.
+    """
 
     mesh: VoronoiMesh
     values: Array
     label: str
     title: str = ""
+    name: str = ""
 
 
 def snapshot_field(run: Run, name: str, time: int) -> ShownField:
@@ -44,20 +48,38 @@ def snapshot_field(run: Run, name: str, time: int) -> ShownField:
     Raises `InputError` where there is no such field or snapshot.
     """
     path = run.directory / HISTORY_FILE
+    _require_number(run, time)
     try:
         with dataset(path) as file:
             file.set_auto_mask(False)
             names = [each for each, variable in file.variables.items() if _is_field(variable)]
             if name not in names:
                 return mesh_field(run.mesh, name, names)
-            if not -len(run.days) <= time < len(run.days):
-                raise InputError(f"{path} has {len(run.days)} snapshots, and none of number {time}; count from 0")
             variable = file[name]
             values = np.asarray(variable[time] if variable.dimensions[0] == "Time" else variable[:], dtype=float)
             label = _label(str(getattr(variable, "long_name", name)), str(getattr(variable, "units", "")))
     except (OSError, RuntimeError) as error:
         raise InputError(f"{path} cannot be read ({error}); name a directory that a run wrote") from error
-    return ShownField(run.mesh, values, label, f"{run.case}, {run.cells} cells, day {run.days[time]:g}")
+    return ShownField(run.mesh, values, label, f"{run.case}, {run.cells} cells, day {run.days[time]:g}", name)
+
+
+def given_to_run(run: Run, values: Array, time: int) -> ShownField:
+    """Values from the caller on the mesh of a run: of one time, or a row for each snapshot, of which `time` is taken.
+
+    Raises `InputError` where they do not fit the mesh, or where there is no such snapshot.
+    """
+    if np.ndim(values) == 2 and len(values) == len(run.days):
+        _require_number(run, time)
+        values = values[time]
+    return given_field(run.mesh, values)
+
+
+def _require_number(run: Run, time: int) -> None:
+    """Raise `InputError` where a run has no snapshot of the number `time`."""
+    if not -len(run.days) <= time < len(run.days):
+        raise InputError(
+            f"{run.directory / HISTORY_FILE} has {len(run.days)} snapshots, and none of number {time}; count from 0"
+        )
 
 
 def mesh_field(mesh: VoronoiMesh, name: str, others: list[str] | None = None) -> ShownField:
@@ -67,7 +89,7 @@ def mesh_field(mesh: VoronoiMesh, name: str, others: list[str] | None = None) ->
         raise InputError(f"there is no field named '{name}'; choose among {known}")
     variable = MESH_FIELDS[name]
     units = "" if _is_length(variable) and mesh.sphere_radius == 1.0 else variable.units
-    return ShownField(mesh, np.asarray(getattr(mesh, name), dtype=float), _label(variable.long_name, units))
+    return ShownField(mesh, np.asarray(getattr(mesh, name), dtype=float), _label(variable.long_name, units), name=name)
 
 
 def given_field(mesh: VoronoiMesh, values: object) -> ShownField:
@@ -78,8 +100,9 @@ def given_field(mesh: VoronoiMesh, values: object) -> ShownField:
     array = np.asarray(values, dtype=float)
     require_place(mesh, array)
     attributes = getattr(values, "attrs", {})
-    name = str(attributes.get("long_name") or getattr(values, "name", None) or "")
-    return ShownField(mesh, array, _label(name, str(attributes.get("units", ""))))
+    name = str(getattr(values, "name", None) or "")
+    meaning = str(attributes.get("long_name") or name)
+    return ShownField(mesh, array, _label(meaning, str(attributes.get("units", ""))), name=name)
 
 
 def _is_field(variable: netCDF4.Variable) -> bool:

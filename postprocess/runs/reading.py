@@ -5,7 +5,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, get_args
+from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import numpy as np
 
@@ -15,13 +15,14 @@ from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
 from mesh.safe_files import AnyPath, dataset
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.runs.labelled import opened_by_xarray
+from postprocess.runs.labelled import grid_of_uxarray, opened_by_xarray
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.outputs import FIELDS
 from swe.errors import InputError
 from swe.output.files import DIAGNOSTICS_FILE, HISTORY_FILE, MESH_FILE, load_record, read_series
 
 if TYPE_CHECKING:
+    import uxarray
     import xarray
 
 DAY_TOLERANCE = 1e-6
@@ -118,10 +119,19 @@ class Run:
         """Time series from `diagnostics.nc`: invariants, their changes and budgets, Courant number. Needs xarray."""
         return opened_by_xarray(self.directory / DIAGNOSTICS_FILE)
 
+    @cached_property
+    def grid(self) -> "uxarray.Grid":
+        """The mesh as a Grid of uxarray, which it needs."""
+        return grid_of_uxarray(self.directory / MESH_FILE)
+
     def snapshot(self, day: float) -> Snapshot:
         """The snapshot of `day`; raise `InputError` if there is none."""
+        return self._read(self.number_of(day))
+
+    def number_of(self, day: float) -> int:
+        """The number, from 0, of the snapshot of `day`; raise `InputError` if there is none."""
         self.require_snapshot(day)
-        return self._read(int(np.argmin(np.abs(self.days - day))))
+        return int(np.argmin(np.abs(self.days - day)))
 
     def require_snapshot(self, day: float) -> None:
         """Raise `InputError` if there is no snapshot of `day`."""
@@ -148,11 +158,19 @@ class Run:
         return snapshot
 
 
+AnyRun = TypeVar("AnyRun", bound=Run)
+
+
 def open_run(directory: AnyPath) -> Run:
     """Open the directory of a run that has finished or is still going; raise `InputError` if it holds no run.
 
     Mesh, fields and diagnostics are read and checked on first use.
     """
+    return open_as(Run, directory)
+
+
+def open_as(kind: type[AnyRun], directory: AnyPath) -> AnyRun:
+    """Open the directory of a run as a class derived from `Run`; see `open_run`."""
     directory = Path(directory)
     with _readable(directory):
         record = load_record(directory)
@@ -162,7 +180,7 @@ def open_run(directory: AnyPath) -> Run:
         configuration = record["configuration"]
         if configuration["sampling"] not in get_args(Sampling):
             raise ValueError(f"its sampling is {configuration['sampling']!r}")
-        run = Run(
+        run = kind(
             directory,
             record,
             case=str(record["case"]),

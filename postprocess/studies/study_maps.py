@@ -4,13 +4,13 @@ from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import CenteredNorm
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array, Index
 from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import normalize
 from postprocess.figures.maps import CENTRAL_LONGITUDE, add_polygons, draw_mollweide
+from postprocess.figures.palettes import deviation_colours
 from postprocess.figures.patches import cell_patches
 from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
 from postprocess.studies.lines import named
@@ -103,9 +103,9 @@ def _panel_for_each(
 
 
 def _colours(error: Array) -> dict:
-    """Blue to red with white at zero; a few very bad cells do not wash out the rest."""
+    """Those of deviations; a few very bad cells do not wash out the rest."""
     root_mean_square = float(np.sqrt(np.mean(error**2)))
-    return {"cmap": "RdBu_r", "norm": CenteredNorm(halfrange=COLOUR_RANGE * root_mean_square or 1.0)}
+    return deviation_colours(error, COLOUR_RANGE * root_mean_square).options
 
 
 def _colour_bar(figure: Figure, axes: Axes) -> None:

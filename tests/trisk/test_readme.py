@@ -59,3 +59,15 @@ def test_the_budget_of_the_wind_is_in_the_diagnostics(folder: Path) -> None:
         assert np.all(file["total_energy_rate_wind"][1:] > 0.0)
         assert file["total_energy_rate_wind"].units == "m5 s-3"
         assert file["absolute_vorticity_rate_wind"].long_name == "rate of absolute vorticity by wind"
+
+
+def test_ten_lines_from_nothing_to_the_difference_of_two_runs(tmp_path: Path) -> None:
+    """As they stand, but for smaller meshes and shorter runs."""
+    pytest.importorskip("xarray")
+    (program,) = [program for program in programs() if "difference.png" in program]
+    assert len([line for line in program.splitlines() if line.strip()]) <= 10
+    small = program.replace("cells=2562", "cells=162").replace("days=5", "days=1").replace("day=5", "day=1")
+    assert "2562" not in small
+    done = subprocess.run([sys.executable, "-c", small], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "difference.png").read_bytes().startswith(b"\x89PNG")

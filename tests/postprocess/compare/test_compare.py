@@ -20,6 +20,7 @@ from postprocess.compare.comparison import compare_runs, comparison_record, fiel
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import ExactSolution, RunSolution
 from postprocess.figures import compare_maps
+from postprocess.figures.palettes import colours_for, deviation_colours
 from postprocess.reference import stored_references
 from postprocess.runs.reading import open_run, read_run
 from swe import Simulation
@@ -364,15 +365,17 @@ def test_maps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 def test_maps_have_one_scale_and_say_what_it_is() -> None:
     x = np.linspace(-1.0, 3.0, compare_maps.ROWS * compare_maps.COLUMNS)
-    for scale, limits in (("range", (-8.0, 3.0)), ("symmetric", (-8.0, 8.0))):
-        figure = compare_maps.map_figure([x, x - 7.0, 0 * x], ["one", "two", "three"], "Heading", "label (m)", scale)
+    panels = [x, x - 7.0, 0 * x]
+    scales = (colours_for("thickness", [panel + 9.0 for panel in panels]), deviation_colours(panels))
+    for colours, limits in zip(scales, [(1.0, 12.0), (-8.0, 8.0)], strict=True):
+        figure = compare_maps.map_figure(panels, ["one", "two", "three"], "Heading", "label (m)", colours)
         images = [image for axes in figure.axes for image in axes.get_images()]
         assert [image.get_clim() for image in images] == [limits] * 3
         assert [axes.get_title() for axes in figure.axes[:3]] == ["one", "two", "three"]
         assert figure.get_suptitle() == "Heading"
         assert figure.axes[-1].get_xlabel() == "label (m)"
-    figure = compare_maps.map_figure([np.abs(x)], ["one"], "Heading", "label (m)", "from zero")
-    assert figure.axes[0].get_images()[0].get_clim() == (0.0, 3.0)
+    figure = compare_maps.map_figure([np.abs(x)], ["one"], "Heading", "label (m)", colours_for("speed", x**2))
+    assert figure.axes[0].get_images()[0].get_clim() == (0.0, 9.0)
 
 
 def test_runs_that_are_open_and_the_table_in_print() -> None:

@@ -143,11 +143,53 @@ def test_colours_are_symmetric_where_values_have_both_signs(ax: Axes, small_mesh
     values = np.linspace(-1.0, 3.0, 162)
     trisk.plot_field(small_mesh, values, ax)
     assert drawn_on(ax).get_clim() == (-3.0, 3.0)
-    assert drawn_on(ax).get_cmap().name == "RdBu_r"
+    assert drawn_on(ax).get_cmap().name == "cmo.balance"
     other = Figure().subplots()
     trisk.plot_field(small_mesh, np.where(values > 2.9, np.nan, values + 2.0), other)
     assert drawn_on(other).get_clim() == pytest.approx((1.0, 4.88), abs=0.03)
-    assert drawn_on(other).get_cmap().name == "viridis"
+    assert drawn_on(other).get_cmap().name == "cmo.haline"
+
+
+@pytest.mark.parametrize(
+    ("name", "palette"), [("thickness", "deep"), ("kinetic_energy", "speed"), ("potential_vorticity", "curl")]
+)
+def test_fields_have_their_palette(ax: Axes, mountain_run: Path, name: str, palette: str) -> None:
+    trisk.plot_field(mountain_run, name, ax)
+    assert drawn_on(ax).get_cmap().name == f"cmo.{palette}"
+
+
+@pytest.mark.parametrize("place", ["n_cells", "n_edges", "n_vertices"])
+def test_a_region_shows_what_lies_between_its_sides(ax: Axes, larger_mesh: VoronoiMesh, place: str) -> None:
+    """Across the date line; colours are those of the polygons that are seen."""
+    latitude = {"n_cells": larger_mesh.lat_cell, "n_edges": larger_mesh.lat_edge, "n_vertices": larger_mesh.lat_vertex}
+    values = np.degrees(latitude[place]) + 100.0
+    trisk.plot_field(larger_mesh, values, ax, region=(150.0, -150.0, 20.0, 40.0))
+    assert (ax.get_xlim(), ax.get_ylim()) == ((150.0, 210.0), (20.0, 40.0))
+    low, high = drawn_on(ax).get_clim()
+    assert 107.0 < low < 120.0 < 140.0 < high < 153.0
+    assert np.asarray(drawn_on(ax).get_array()).min() < 100.0
+
+
+def test_a_region_all_round_and_one_to_360(ax: Axes, small_mesh: VoronoiMesh) -> None:
+    trisk.plot_field(small_mesh, "area_cell", ax, region=(-180.0, 180.0, -90.0, 90.0))
+    assert (ax.get_xlim(), ax.get_ylim()) == ((-180.0, 180.0), (-90.0, 90.0))
+
+
+def test_a_row_for_each_snapshot_shows_that_of_the_time(ax: Axes, mountain_run: Path) -> None:
+    run = trisk.open_run(mountain_run)
+    rows = np.outer([1.0, 2.0, 3.0], np.ones(162))
+    trisk.plot_field(run, rows, ax, time=1)
+    assert set(np.asarray(drawn_on(ax).get_array())) == {2.0}
+    with pytest.raises(InputError, match="none of number 3"):
+        trisk.plot_field(run, rows, ax, time=3)
+
+
+def test_powers_of_ten_are_printed_as_such(ax: Axes, mountain_run: Path) -> None:
+    trisk.plot_field(mountain_run, "potential_vorticity", ax)
+    figure = ax.get_figure()
+    assert isinstance(figure, Figure)
+    figure.draw_without_rendering()
+    assert "10^{" in figure.axes[1].yaxis.get_offset_text().get_text()
 
 
 def test_colours_and_labels_of_the_caller(ax: Axes, small_mesh: VoronoiMesh) -> None:
@@ -213,6 +255,12 @@ def test_cylindrical_maps_without_extent_show_the_globe(
             "a window of 181 x 181 degrees does not fit on the orthographic map; it may have up to 180",
         ),
         ({"extent": (10.0, 0.0)}, "a window of 10 x 0 degrees does not fit"),
+        ({"region": (0.0, 0.0, -10.0, 10.0)}, r"a map has no region \(0.0, 0.0, -10.0, 10.0\); give west, east, south"),
+        ({"region": (0.0, 20.0, 10.0, -10.0)}, "south below north"),
+        ({"region": (0.0, 20.0, 10.0, 91.0)}, "a map has no region"),
+        ({"region": (0.0, np.nan, 10.0, 20.0)}, "a map has no region"),
+        ({"region": (0.0, 20.0, 0.0, 20.0), "extent": 20.0}, "give it without centre and extent"),
+        ({"region": (0.0, 20.0, 0.0, 20.0), "projection": "orthographic"}, "on the cylindrical projection"),
         ({"extent": 20.0, "projection": "mollweide"}, "a Mollweide map shows the whole globe"),
         ({"centre": (0.0, 5.0), "projection": "mollweide"}, "a Mollweide map shows the whole globe"),
     ],

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from cases import Williamson5
 from mesh import scvt_mesh
 from postprocess.figures.compare_maps import COLUMNS, ROWS, map_figure
+from postprocess.figures.palettes import Colours, colours_for, deviation_colours
 from postprocess.figures.plots import plot_run
 from postprocess.runs.reading import read_run
 from swe import Simulation
@@ -95,10 +96,11 @@ def test_maps_show_fields_in_the_units_of_their_bars(
         low, high = axes.collections[0].get_clim()
         if name == "potential_vorticity":
             assert (low, high) == pytest.approx((-np.abs(values).max() / unit, np.abs(values).max() / unit))
-            assert axes.collections[0].get_cmap().name == "RdBu_r"
+            assert axes.collections[0].get_cmap().name == "cmo.curl"
         else:
-            assert (low, high) == pytest.approx((values.min(), values.max()))
-            assert axes.collections[0].get_cmap().name == "viridis"
+            energy = name == "kinetic_energy"
+            assert (low, high) == pytest.approx((0.0 if energy else values.min(), values.max()))
+            assert axes.collections[0].get_cmap().name == ("cmo.speed" if energy else "cmo.haline")
 
 
 def test_mesh_figure_shows_areas_and_qualities(figures: dict[str, Figure], fields: Arrays) -> None:
@@ -140,8 +142,12 @@ def test_conservation_shows_the_series(figures: dict[str, Figure], directory: Pa
 
 def test_compared_maps_have_one_scale_for_all() -> None:
     panels = [np.linspace(-1.0, 2.0, ROWS * COLUMNS), np.linspace(0.0, 5.0, ROWS * COLUMNS)]
-    for scale, limits in (("range", (-1.0, 5.0)), ("from zero", (0.0, 5.0)), ("symmetric", (-5.0, 5.0))):
-        figure = map_figure(panels, ["one", "other"], "Heading", "depth (m)", scale)
+    for colours, limits in (
+        (Colours("deep", -1.0, 5.0, centred=False), (-1.0, 5.0)),
+        (colours_for("speed", [panel + 1.0 for panel in panels]), (0.0, 6.0)),
+        (deviation_colours(panels), (-5.0, 5.0)),
+    ):
+        figure = map_figure(panels, ["one", "other"], "Heading", "depth (m)", colours)
         images = [image for axes in figure.axes for image in axes.images]
         assert [image.get_clim() for image in images[:2]] == [limits, limits]
         for image, panel in zip(images, panels, strict=False):

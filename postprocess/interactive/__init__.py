@@ -1,0 +1,1 @@
+"""Runs as users hold them in Python and in notebooks."""
