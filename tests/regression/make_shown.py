@@ -36,7 +36,7 @@ from postprocess.figures.plots import plot_run
 from postprocess.figures.spectra_figure import write_spectra_of
 from postprocess.runs.reading import read_run
 from postprocess.studies import page as pages
-from postprocess.studies import study_report
+from postprocess.reports import study_report
 from postprocess.studies.families import FAMILIES, Family
 from postprocess.studies.mesh_study import Plan
 from postprocess.studies.mesh_study import carry_out as carry_out_meshes

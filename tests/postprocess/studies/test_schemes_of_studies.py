@@ -19,7 +19,7 @@ from postprocess.studies.mesh_study import Member, Plan
 from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task
 from postprocess.studies.study_maps import closeup_figure, map_figure
-from postprocess.studies.study_report import write_mesh_report, write_time_report
+from postprocess.reports.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 

@@ -18,7 +18,7 @@ from postprocess.studies.page import write_page
 from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure, truncation_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
 from postprocess.studies.study_maps import draw_closeup
-from postprocess.studies.study_report import write_mesh_report, write_time_report
+from postprocess.reports.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 
