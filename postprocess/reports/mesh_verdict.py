@@ -85,7 +85,11 @@ def best_mesh(rows: dict[str, StudyRow]) -> list[str]:
             f"of thickness is {number(row['thickness_l2'])}."
         ]
     found = [_smallest(rows, asked)]
-    found += [_smallest_of_another(rows, column, words, best_of(rows)) for column, words in OTHER_ERRORS.items()]
+    best = best_of(rows)
+    agreeing = [words for column, words in OTHER_ERRORS.items() if set(best) == set(_known_best(rows, column))]
+    if agreeing:
+        found.append(f"The same holds of {listed(agreeing)}.")
+    found += [_another(rows, column, words, best) for column, words in OTHER_ERRORS.items() if words not in agreeing]
     cells = sorted({int(each["cells"]) for each in rows.values()})
     if len(cells) > 1:
         found.append(f"These meshes have from {cells[0]} to {cells[-1]} cells, so weigh their costs too.")
@@ -125,13 +129,16 @@ def _smallest(rows: dict[str, StudyRow], asked: int) -> str:
     return f"{start}; {listed(ends)}." if ends else f"{start}."
 
 
-def _smallest_of_another(rows: dict[str, StudyRow], column: str, words: str, best: Sequence[str]) -> str:
-    """Whether the best by the l2 error of thickness are the best by another error; empty where that is not known."""
-    if not all(row.get(column, 0.0) > 0.0 for row in rows.values()):
+def _known_best(rows: dict[str, StudyRow], column: str) -> list[str]:
+    """The best by another error; empty where it is not known or zero."""
+    return best_of(rows, column) if all(row.get(column, 0.0) > 0.0 for row in rows.values()) else []
+
+
+def _another(rows: dict[str, StudyRow], column: str, words: str, best: Sequence[str]) -> str:
+    """Which lines are best by another error, others than by the l2 error of thickness; empty where it is not known."""
+    here = _known_best(rows, column)
+    if not here:
         return ""
-    here = best_of(rows, column)
-    if set(here) == set(best):
-        return f"By {words}, the same holds." if len(best) == 1 else f"By {words}, they are equal too."
     if len(here) > 1:
         return f"By {words}, {listed(here)} are equal{'' if len(here) == len(rows) else ' and the smallest'}."
     ratio = rows[best[0]][column] / rows[here[0]][column]
@@ -198,9 +205,10 @@ def costs(lines: Lines) -> list[str]:
     within = {name: cost_of_error(line, wanted) for name, line in lines.items()}
     known = {name: cost for name, cost in within.items() if cost is not None}
     below = [name for name in lines if name not in known]
-    found = [f"An l2 error of thickness of {number(wanted)} is one that every line reaches."] + _cheapest(known)
+    found = [f"An l2 error of thickness of {number(wanted)} is one that every line reaches.", *_cheapest(known)]
     if below:
-        found.append(f"Even the coarsest {counted(len(below), 'mesh', 'meshes')} of {listed(below)} are below it.")
+        coarsest, are = ("mesh", "is") if len(below) == 1 else ("meshes", "are")
+        found.append(f"Even the coarsest {coarsest} of {listed(below)} {are} below it.")
     return [*found, COUNTED]
 
 
@@ -238,7 +246,7 @@ def _costs_at_one_size(rows: dict[str, StudyRow]) -> str:
     ranked = sorted(rows, key=lambda name: float(rows[name]["cells"] * rows[name]["steps"]))
     spent = listed(f"{name} {number(rows[name]['cells'] * rows[name]['steps'])}" for name in ranked)
     return (
-        f"Cells times steps: {spent}. What an equal error costs cannot be told, as not every line has two sizes of mesh."
+        f"Cells times steps: {spent}. The cost of an equal error cannot be told: not every line has two sizes of mesh."
     )
 
 

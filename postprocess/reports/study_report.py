@@ -88,7 +88,7 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Study
     sections = {
         "Solution errors": table_of(rows, ERROR_COLUMNS),
         "Fitted orders": table_of(_order_rows(compared), {"family": "family", **ERRORS}),
-        "Where the error lives: shares of the squared error of thickness and of the area": table_of(rows, SHARE_COLUMNS),
+        "Where the error lives: shares of its square and of the area": table_of(rows, SHARE_COLUMNS),
         "Quality of the meshes": table_of(rows, QUALITY_COLUMNS),
         "Truncation errors of the operators": table_of(rows, TRUNCATION_COLUMNS),
         "Conservation, largest change on the way": table_of(rows, CONSERVATION_COLUMNS),
