@@ -64,7 +64,7 @@ def error_shares(mesh: VoronoiMesh, error: Array) -> dict[str, Share]:
 
 def shares_as_columns(shares: Mapping[str, Share]) -> dict[str, float]:
     """Shares by the names of columns, `error_share_ZONE` and `area_share_ZONE`."""
-    columns = {}
+    columns: dict[str, float] = {}
     for zone, share in shares.items():
         columns |= {f"error_share_{zone}": share.error, f"area_share_{zone}": share.area}
     return columns
