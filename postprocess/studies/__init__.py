@@ -1,1 +1,1 @@
-"""Studies over meshes and time steps, with their figures and reports."""
+"""Studies over meshes and time steps, with their figures."""

@@ -20,6 +20,7 @@ from mesh.geometry.sphere import mean_spacing
 from mesh.safe_files import dataset
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.compare.comparison import Comparison, compare_runs, fields_of, fields_on
+from postprocess.compare.shares import error_shares, shares_as_columns
 from postprocess.compare.truncation import truncation_errors
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
@@ -173,7 +174,8 @@ def _errors(member: Member, comparison: Comparison, day: float) -> StudyRow:
     for field, norms in comparison.entries[0].norms.items():
         row |= {f"{field}_{name}": value for name, value in asdict(norms).items()}
     row |= {f"uncertainty_{field}": value for field, value in comparison.solution.uncertainty(day).items()}
-    return row | _worst_cell(member, day)
+    shares = error_shares(member.mesh, thickness_error(member, day))
+    return row | _worst_cell(member, day) | shares_as_columns(shares)
 
 
 def _worst_cell(member: Member, day: float) -> StudyRow:

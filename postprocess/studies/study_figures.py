@@ -40,6 +40,9 @@ QUALITIES = {
 """Measures of a mesh that errors are drawn against, and their labels."""
 
 OPERATORS = ("gradient", "divergence", "curl", "perp", "kinetic_energy")
+PANEL_WIDTH, PANEL_HEIGHT = 4.8, 3.8
+"""Inches of a panel: two beside each other are as wide as a page."""
+
 MARKERS = "osD^vP*X"
 SHORT_AXIS = 30.0
 """Logarithmic axes that span less than this ratio have labels at 1, 2 and 5 times powers of ten."""
@@ -63,8 +66,9 @@ def error_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
 
 
 def truncation_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
-    """Truncation errors of the operators against the distance of cells: l2 above, l∞ below."""
-    figure, grid = _panels(2 * len(OPERATORS), len(OPERATORS))
+    """Truncation errors of the operators against the distance of cells: l2 on the left, l∞ on the right."""
+    figure, grid = _panels(2 * len(OPERATORS), 2)
+    grid = grid[::2] + grid[1::2]
     for axes, (norm, operator) in zip(grid, [(n, o) for n in ("l2", "linf") for o in OPERATORS], strict=True):
         _draw_families(axes, rows, f"truncation_{operator}_{norm}")
         axes.set_title(f"{operator.replace('_', ' ')}, {norm.replace('linf', 'l∞')}", fontsize=10)
@@ -77,7 +81,7 @@ def quality_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
 
     Markers of the second scheme are hollow.
     """
-    figure, grid = _panels(len(QUALITIES), 3)
+    figure, grid = _panels(len(QUALITIES), 2)
     families, schemes = families_of(rows), schemes_of(rows)
     sizes = sorted({row["requested_cells"] for row in rows})
     for axes, (name, label) in zip(grid, QUALITIES.items(), strict=True):
@@ -129,7 +133,7 @@ def conservation_figure(members: Sequence[Member], heading: str) -> Figure:
 def _panels(count: int, columns: int) -> tuple[Figure, list[Axes]]:
     columns = min(columns, count)
     rows = -(-count // columns)
-    figure = Figure(figsize=(3.9 * columns + 1.0, 3.6 * rows + 0.8), layout="constrained")
+    figure = Figure(figsize=(PANEL_WIDTH * columns, PANEL_HEIGHT * rows + 0.8), layout="constrained")
     return figure, list(np.atleast_1d(figure.subplots(rows, columns)).ravel())
 
 

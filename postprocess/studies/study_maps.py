@@ -34,7 +34,7 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
 
     Dots mark pentagons (black) and heptagons (magenta), unless there are too many; a ring marks the worst cell.
     """
-    figure, panels = _panel_for_each(members, 2, (6.4, 3.9))
+    figure, panels = _panel_for_each(members, 2, (4.8, 3.3))
     for axes, member in panels:
         _colour_bar(figure, draw_error_map(axes, member, day, _name(member, members)))
     figure.suptitle(heading)
@@ -48,13 +48,13 @@ def draw_error_map(axes: Axes, member: Member, day: float, name: str) -> Axes:
     _mark_irregular_cells(axes, member)
     worst = int(np.argmax(np.abs(error)))
     axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
-    axes.set_title(f"{name}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=9)
+    axes.set_title(f"{name}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=10)
     return axes
 
 
 def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     """The error of thickness round the worst cell of each mesh, with the number of sides of irregular cells."""
-    figure, panels = _panel_for_each(members, 4, (3.2, 4.2))
+    figure, panels = _panel_for_each(members, 3, (3.2, 4.2))
     for axes, member in panels:
         _colour_bar(figure, draw_closeup(axes, member, day, _name(member, members)))
     figure.suptitle(heading)
@@ -73,9 +73,9 @@ def draw_closeup(axes: Axes, member: Member, day: float, name: str) -> Axes:
     add_polygons(axes, polygons, error[cells], {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)})
     for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
         x, y, _ = flat[cell]
-        axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=7, clip_on=True)
+        axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
-    axes.set_title(f"{name}\n{place_in_words(*np.degrees(view))}", fontsize=9)
+    axes.set_title(f"{name}\n{place_in_words(*np.degrees(view))}", fontsize=10)
     return axes
 
 
@@ -109,9 +109,9 @@ def _colours(error: Array) -> dict:
 
 
 def _colour_bar(figure: Figure, axes: Axes) -> None:
-    bar = figure.colorbar(axes.collections[-1], ax=axes, location="bottom", shrink=0.6, aspect=30, extend="both")
-    bar.set_label("error of thickness (m)", fontsize=7)
-    bar.ax.tick_params(labelsize=7)
+    bar = figure.colorbar(axes.collections[-1], ax=axes, location="bottom", shrink=0.9, aspect=30, extend="both")
+    bar.set_label("error of thickness (m)", fontsize=9)
+    bar.ax.tick_params(labelsize=9)
 
 
 def _on_map(member: Member, cells: Sequence[int] | Index) -> tuple[Array, Array]:

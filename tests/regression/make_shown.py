@@ -34,9 +34,9 @@ from postprocess.compare.comparison import compare_runs, comparison_record
 from postprocess.figures.compare_maps import write_maps
 from postprocess.figures.plots import plot_run
 from postprocess.figures.spectra_figure import write_spectra_of
+from postprocess.reports import study_report
 from postprocess.runs.reading import read_run
 from postprocess.studies import page as pages
-from postprocess.studies import study_report
 from postprocess.studies.families import FAMILIES, Family
 from postprocess.studies.mesh_study import Plan
 from postprocess.studies.mesh_study import carry_out as carry_out_meshes

@@ -43,10 +43,10 @@ def mesh(
     """
     from cases import find_case
     from cases.parameters import split_settings
+    from postprocess.reports.study_report import write_mesh_report
     from postprocess.studies.families import FAMILIES
     from postprocess.studies.lines import chosen_schemes
     from postprocess.studies.mesh_study import Plan, carry_out
-    from postprocess.studies.study_report import write_mesh_report
 
     chosen = find_case(case, split_settings(settings or ()))
     days = chosen.recommended_days if days is None else days
@@ -85,8 +85,8 @@ def time(
     """
     from cases import find_case
     from cases.parameters import split_settings
+    from postprocess.reports.study_report import write_time_report
     from postprocess.studies.lines import chosen_schemes
-    from postprocess.studies.study_report import write_time_report
     from postprocess.studies.time_study import TimePlan, carry_out
     from trisk.arguments.meshes import chosen_mesh
 

@@ -58,7 +58,7 @@ def test_the_backend_and_the_settings_of_the_user_stay() -> None:
     program = (
         "import matplotlib; matplotlib.use('svg'); before = dict(matplotlib.rcParams)\n"
         "import postprocess.figures.plots, postprocess.figures.compare_maps, postprocess.compare.spectra\n"
-        "import postprocess.studies.study_report\n"
+        "import postprocess.reports.study_report\n"
         "print(matplotlib.get_backend(), dict(matplotlib.rcParams) == before)"
     )
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)

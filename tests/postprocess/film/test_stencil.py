@@ -36,10 +36,7 @@ def test_pixels_show_their_cells(coarse_mesh: VoronoiMesh) -> None:
 
 
 def test_edges_and_vertices_have_pixels(coarse_mesh: VoronoiMesh) -> None:
-    for count, around in (
-        (coarse_mesh.n_vertices, coarse_mesh.cells_on_vertex),
-        (coarse_mesh.n_edges, coarse_mesh.cells_on_edge),
-    ):
+    for around in (coarse_mesh.cells_on_vertex, coarse_mesh.cells_on_edge):
         stencil, pixels, near = stencil_from_above(coarse_mesh, len(around))
         cells = np.flatnonzero(near)
         # At its centre a cell touches the triangles, or quadrilaterals, of its own vertices, or edges.

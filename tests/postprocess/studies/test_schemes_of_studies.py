@@ -13,13 +13,13 @@ from matplotlib.lines import Line2D
 from cases import find_case
 from mesh import scvt_mesh
 from postprocess.compare.truncation import truncation_errors
+from postprocess.reports.study_report import write_mesh_report, write_time_report
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.lines import chosen_schemes, lines_of, named
 from postprocess.studies.mesh_study import Member, Plan
 from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task
 from postprocess.studies.study_maps import closeup_figure, map_figure
-from postprocess.studies.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 

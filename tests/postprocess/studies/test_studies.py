@@ -11,6 +11,7 @@ from matplotlib.image import imread
 from cases import find_case
 from cases.williamson import Williamson2
 from mesh import VoronoiMesh, mesh_quality, scvt_mesh, write_mesh
+from postprocess.reports.study_report import write_mesh_report, write_time_report
 from postprocess.studies import mesh_study, time_study
 from postprocess.studies.families import FAMILIES, STOPPED_RESIDUALS
 from postprocess.studies.mesh_study import Plan
@@ -18,7 +19,6 @@ from postprocess.studies.page import write_page
 from postprocess.studies.study_figures import conservation_figure, error_figure, quality_figure, truncation_figure
 from postprocess.studies.study_folder import TABLE_FILE, StudyRow, Task, fitted_order
 from postprocess.studies.study_maps import draw_closeup
-from postprocess.studies.study_report import write_mesh_report, write_time_report
 from postprocess.studies.time_study import TimePlan
 from swe.errors import InputError
 

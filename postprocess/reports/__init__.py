@@ -1,0 +1,1 @@
+"""Reports: what studies and comparisons found, in sentences, figures and tables."""
