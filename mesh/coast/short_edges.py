@@ -116,12 +116,13 @@ class _Tried:
 
 
 def _better(best: _Tried, points: Array, converge: Converge, tolerance: float, allowed: float) -> _Tried:
-    """What `points` (n, 3) converge to if it are in the sea at an `allowed` residual and lack less than the `best`, else that."""
+    """What `points` (n, 3) converge to if that lacks less than the `best` at an `allowed` residual, else the best."""
     try:
         found = converge(points, tolerance)
         tried = _Tried(found, side_lengths(found.sea, found.result.points))
     except MeshError:  # displaced cells may end in several parts, or with two sides
         return best
+    # A generator on land is refused later.
     converged = found.result.history.residual[-1] <= allowed and found.sea.coastline.contains(found.result.points).all()
     return tried if converged and tried.lengths.lacking < best.lengths.lacking else best
 
