@@ -14,14 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, sum_by_index
-from mesh.coast.corners import COAST, Corners, corners_of, following_rows
+from mesh.coast.corners import COAST, corners_of, following_rows
 from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.errors import MeshError, MeshWarning
 from mesh.generation.generators import DEFAULT_SEED
 from mesh.geometry.sphere import arc_length, hexagon_spacing, normalize, triangle_area
 
 INNER_EDGE, COASTAL_EDGE = 0.12, 0.32
-"""Least lengths, in local spacings, of edges between two cells and of those at the coast."""
+"""Least lengths, in local spacings, of edges away from the coast, and of those along it or with an end there."""
 
 LOOSE_TOLERANCE = 1e-4
 """Residual, in mean spacings, at which lengths of edges are known to some thousandths of a spacing."""
@@ -44,20 +44,16 @@ Converge = Callable[[Array, float], SeaResult]
 
 @dataclass(frozen=True, eq=False)
 class SideLengths:
-    """Lengths (n_corners,) of the sides that follow the `corners`, and `spacings` (n_cells,) of the cells, in radians.
+    """Sides (n_corners,) of clipped cells: their cells, their lengths, and whether they lie or end at the coast.
 
-    The lengths are in local spacings, those of hexagons as large as the cells: the mean of both cells, or that of the
-    one cell at the coast.
+    `lengths` are in local spacings, those of hexagons as large as the cells on both sides in the mean, or as the one
+    cell at the coast. `spacings` (n_cells,) are those of the cells, in radians.
     """
 
-    corners: Corners
+    cells: Index
     lengths: Array
+    at_coast: NDArray[np.bool_]
     spacings: Array
-
-    @property
-    def at_coast(self) -> NDArray[np.bool_]:
-        """Whether a side (n_corners,) is a portion of the coast."""
-        return self.corners.neighbours == COAST
 
     @property
     def shortfalls(self) -> Array:
@@ -76,12 +72,13 @@ def side_lengths(sea: SeaCells, points: Array) -> SideLengths:
     Raises `MeshError` as `corners_of` does.
     """
     corners = corners_of(sea)
-    ends = sea.circumcenters[corners.places]
+    following = corners.places[following_rows(corners.starts)]
     spacings = hexagon_spacing(_areas(sea, points))
     own = spacings[corners.cells]
     other = np.where(corners.neighbours == COAST, own, spacings[corners.neighbours])
-    lengths = arc_length(ends, ends[following_rows(corners.starts)])
-    return SideLengths(corners, lengths / (0.5 * (own + other)), spacings)
+    lengths = arc_length(sea.circumcenters[corners.places], sea.circumcenters[following])
+    at_coast = np.maximum(corners.places, following) >= sea.n_triangles
+    return SideLengths(corners.cells, lengths / (0.5 * (own + other)), at_coast, spacings)
 
 
 def without_short_edges(found: SeaResult, converge: Converge, tolerance: float, seed: int = DEFAULT_SEED) -> SeaResult:
@@ -142,7 +139,7 @@ def _near_short_edges(sea: SeaCells, lengths: SideLengths) -> Index:
     """Cells within `SHAKEN_RINGS` of those beside an edge that is too short; an inner edge has a row for each cell."""
     triangles = sea.triangles
     marked = np.zeros(triangles.max() + 1, bool)
-    marked[lengths.corners.cells[lengths.shortfalls > 0.0]] = True
+    marked[lengths.cells[lengths.shortfalls > 0.0]] = True
     for _ in range(SHAKEN_RINGS):
         marked[triangles[marked[triangles].any(axis=1)]] = True
     return np.flatnonzero(marked[: sea.n_cells])
@@ -158,11 +155,11 @@ def _areas(sea: SeaCells, points: Array) -> Array:
 
 
 def _warn(lengths: SideLengths) -> None:
-    inner, coastal = lengths.lengths[~lengths.at_coast].min(), lengths.lengths[lengths.at_coast].min()
+    inner, coastal = (lengths.lengths[at].min(initial=np.inf) for at in (~lengths.at_coast, lengths.at_coast))
     warnings.warn(
-        f"the shortest edge between two cells has {inner:.3f} local spacings and the shortest at the coast "
-        f"{coastal:.3f}, below {INNER_EDGE} or {COASTAL_EDGE}, after {ATTEMPTS} attempts to mend the mesh of "
-        f"{len(lengths.spacings)} cells; try another seed or number of cells",
+        f"the shortest edge has {inner:.3f} local spacings away from the coast and "
+        f"{coastal:.3f} at the coast, below {INNER_EDGE} or {COASTAL_EDGE}, after {ATTEMPTS} attempts to mend the "
+        f"mesh of {len(lengths.spacings)} cells; try another seed or number of cells",
         MeshWarning,
         stacklevel=3,
     )
