@@ -59,6 +59,13 @@ def corners_of(sea: SeaCells) -> Corners:
     return corners
 
 
+def following_rows(starts: Index) -> Index:
+    """The next row (starts[-1],) round each of the rings that begin at `starts`, up to the last of these."""
+    following = np.arange(1, starts[-1] + 1)
+    following[starts[1:] - 1] = starts[:-1]
+    return following
+
+
 @numba.njit(cache=True)
 def _fill_corners(
     ring_starts: Index,

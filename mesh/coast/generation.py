@@ -8,12 +8,13 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.coast.coastline import Coastline
 from mesh.coast.raised import RaisedDensity
-from mesh.coast.sea_cells import SeaCells
+from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.coast.sea_mesh import sea_mesh
+from mesh.coast.short_edges import without_short_edges
 from mesh.coast.start import fillers, sea_spacing, starting_points
 from mesh.density.named import Density, uniform
 from mesh.errors import MeshError
-from mesh.generation.optimizer import Callback, Limits, Optimizer, ScvtResult
+from mesh.generation.optimizer import Callback, Limits, Optimizer
 from mesh.generation.scvt import VARIABLE_TOLERANCE, cells_of, check_converged, density_of, limits_of
 from mesh.geometry.sphere import fibonacci_points
 from mesh.mesh_request import MeshRequest
@@ -27,14 +28,6 @@ METHODS = ("lbfgs", "lloyd")
 
 COAST_SPACINGS = 1.5
 """Width, in mean spacings, to which the coast is smoothed: bays as narrow as one spacing end in cells of two sides."""
-
-
-@dataclass(frozen=True, eq=False)
-class SeaResult:
-    """Converged generators, and their clipped cells."""
-
-    result: ScvtResult
-    sea: SeaCells
 
 
 @dataclass(frozen=True)
@@ -52,7 +45,8 @@ def region_mesh(
 
     The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci`
     by default, and `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by
-    default), iterations, seconds and seed. Raises `MeshError` if no such mesh can be made.
+    default), iterations, seconds and seed. Short edges are mended (`mesh.coast.short_edges`). Raises `MeshError` if no
+    such mesh can be made.
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)
@@ -65,6 +59,12 @@ def region_mesh(
     points = starting_points(coastline, cells_of(request), density, _start_of(request, density), request.seed)
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
+
+    def converge_again(points: Array, tolerance: float) -> SeaResult:
+        left = replace(limits.since(begin), tolerance=tolerance)
+        return converge_at_sea(coastline, points, density=density, limits=left, callback=callback)
+
+    found = without_short_edges(found, converge_again, limits.tolerance, request.seed)
     return sea_mesh(found.sea, found.result.points, density)
 
 

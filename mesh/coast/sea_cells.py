@@ -1,11 +1,14 @@
 """Voronoi cells of moving generators, clipped by a coast: what an optimiser takes in the place of a triangulation."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.coast.clipped_rings import fill_clipped_rings, list_portions
 from mesh.coast.coastline import Coastline
 from mesh.coast.crossings import follow_coast
+from mesh.generation.optimizer import ScvtResult
 from mesh.triangulation.moving import Triangulation
 
 
@@ -105,3 +108,11 @@ class SeaCells:
             self.rings,
             self.loops,
         )
+
+
+@dataclass(frozen=True, eq=False)
+class SeaResult:
+    """Converged generators, and their clipped cells."""
+
+    result: ScvtResult
+    sea: SeaCells

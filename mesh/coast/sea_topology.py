@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesh.arrays import Index
-from mesh.coast.corners import COAST, Corners, corners_of
+from mesh.coast.corners import COAST, Corners, corners_of, following_rows
 from mesh.coast.sea_cells import SeaCells
 from mesh.discrete.topology import FILL, edges_beside
 from mesh.voronoi_mesh import Topology
@@ -22,7 +22,7 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
     cell_rings = _rings(corners, edge_of, vertex_of)
     sizes, across, edges, vertices = cell_rings
     n_edges_on_edge, edges_on_edge = edges_beside(edges, sizes, cells_on_edge)
-    following = _following(corners)
+    following = following_rows(corners.starts)
     first = np.zeros(len(cells_on_edge), np.int64)
     rows = np.flatnonzero(cells_on_edge[edge_of, 0] == corners.cells)
     first[edge_of[rows]] = rows
@@ -40,13 +40,6 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
         boundary_vertex=(cells_on_vertex[:, 2] == FILL).astype(np.int32),
     )
     return topology, places
-
-
-def _following(corners: Corners) -> Index:
-    """Row (n_corners,) of the next corner of the same cell."""
-    following = np.arange(1, len(corners.places) + 1)
-    following[corners.starts[1:] - 1] = corners.starts[:-1]
-    return following
 
 
 def _preceding(corners: Corners) -> Index:

@@ -4,8 +4,8 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.coast.coastline import Coastline
-from mesh.coast.generation import SeaResult, converge_at_sea
-from mesh.coast.sea_cells import SeaCells
+from mesh.coast.generation import converge_at_sea
+from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.coast.start import fillers, sea_spacing, starting_points
 from mesh.density.named import Density, uniform
 from mesh.generation.optimizer import Limits

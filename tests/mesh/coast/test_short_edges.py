@@ -1,0 +1,125 @@
+"""Edges of nearly no length, and the meshes without them."""
+
+import numpy as np
+import pytest
+
+from mesh import MeshError, MeshWarning
+from mesh.arrays import Array
+from mesh.coast import short_edges
+from mesh.coast.coastline import Coastline
+from mesh.coast.generation import converge_at_sea, region_mesh
+from mesh.coast.raised import RaisedDensity
+from mesh.coast.sea_cells import SeaResult
+from mesh.coast.sea_mesh import sea_mesh
+from mesh.coast.short_edges import COASTAL_EDGE, INNER_EDGE, SideLengths, side_lengths, without_short_edges
+from mesh.density.named import Density, uniform
+from mesh.discrete.walls import wall_edges
+from mesh.generation.optimizer import Limits
+from mesh.geometry.sphere import arc_length, hexagon_spacing
+from mesh.mesh_request import MeshRequest
+from mesh.regions.find import find_region
+from tests.mesh.coast.shores import converged, wavy_sea
+
+CELLS = 275
+"""A lattice in the wavy sea whose dislocations leave an edge of 0.07 spacings."""
+
+TOLERANCE = 1e-6
+
+
+def mended(coastline: Coastline, found: SeaResult, density: Density = uniform, seed: int = 0) -> SeaResult:
+    def again(points: Array, tolerance: float) -> SeaResult:
+        return converge_at_sea(coastline, points, density=density, limits=Limits(tolerance))
+
+    return without_short_edges(found, again, TOLERANCE, seed)
+
+
+def lengths_of(found: SeaResult) -> SideLengths:
+    return side_lengths(found.sea, found.result.points)
+
+
+@pytest.fixture(scope="module")
+def coastline() -> Coastline:
+    return wavy_sea(CELLS, island=False)
+
+
+@pytest.fixture(scope="module")
+def found(coastline: Coastline) -> SeaResult:
+    return converged(coastline, CELLS, TOLERANCE)
+
+
+def test_lengths_are_those_of_the_edges_of_the_mesh(found: SeaResult) -> None:
+    mesh, lengths = sea_mesh(found.sea, found.result.points), lengths_of(found)
+    spacing = hexagon_spacing(mesh.area_cell)
+    local = spacing[mesh.cells_on_edge].mean(axis=1)
+    walls = wall_edges(mesh)
+    local[walls] = spacing[mesh.cells_on_edge[walls, 0]]
+    at_coast = (mesh.boundary_vertex[mesh.vertices_on_edge] == 1).any(axis=1)
+    for part, of_sides in ((at_coast, lengths.at_coast), (~at_coast, ~lengths.at_coast)):
+        expected = (mesh.dv_edge / local)[part]
+        assert np.unique(lengths.lengths[of_sides].round(9)) == pytest.approx(np.unique(expected.round(9)))
+
+
+def test_a_short_edge_is_mended_and_the_rest_stays(coastline: Coastline, found: SeaResult) -> None:
+    before = lengths_of(found)
+    assert before.lengths.min() < 0.08
+    better = mended(coastline, found)
+    after = lengths_of(better)
+    assert after.lengths[~after.at_coast].min() >= INNER_EDGE
+    assert after.lengths[after.at_coast].min() >= COASTAL_EDGE
+    assert better.result.history.residual[-1] <= TOLERANCE
+    assert better.result.history.energy[-1] == pytest.approx(found.result.history.energy[-1], rel=1e-3)
+    moved = arc_length(found.result.points, better.result.points) / before.spacings
+    assert np.median(moved) < 0.2
+    assert mended(coastline, found).result.points.tobytes() == better.result.points.tobytes()
+    assert mended(coastline, better) is better
+
+
+def test_a_short_edge_at_the_coast_is_mended(monkeypatch: pytest.MonkeyPatch) -> None:
+    coastline = wavy_sea(226)
+    found = converged(coastline, 226, TOLERANCE)
+    before = lengths_of(found)
+    shortest = before.lengths[before.at_coast].min()
+    monkeypatch.setattr(short_edges, "COASTAL_EDGE", 1.02 * shortest)
+    after = lengths_of(mended(coastline, found))
+    assert after.lengths[after.at_coast].min() >= 1.02 * shortest
+
+
+def test_under_a_density_edges_are_measured_in_local_spacings() -> None:
+    coastline = wavy_sea(250, island=False)
+    density = RaisedDensity(uniform, coastline.points, 0.15, 16.0)
+    found = converged(coastline, 250, TOLERANCE, density=density)
+    before = lengths_of(found)
+    assert before.spacings.max() > 1.4 * before.spacings.min()
+    assert before.lacking > 0.0
+    better = mended(coastline, found, density)
+    assert lengths_of(better).lacking == 0.0
+    assert better.result.history.residual[-1] <= TOLERANCE
+
+
+def test_what_cannot_be_mended_is_told(found: SeaResult) -> None:
+    def fail(points: Array, tolerance: float) -> SeaResult:
+        raise MeshError("points coincide")
+
+    for again in (fail, lambda points, tolerance: found):
+        with pytest.warns(MeshWarning, match=r"shortest edge has 0\.06\d local spacings .* after 3 attempts"):
+            assert without_short_edges(found, again, TOLERANCE) is found
+
+
+def test_a_mesh_that_is_less_centroidal_is_not_taken(coastline: Coastline, found: SeaResult) -> None:
+    def loosely(points: Array, tolerance: float) -> SeaResult:
+        return converge_at_sea(coastline, points, limits=Limits(1e-3))
+
+    with pytest.warns(MeshWarning, match="shortest edge"):
+        assert without_short_edges(found, loosely, TOLERANCE) is found
+
+
+def test_the_mesh_of_a_region_is_mended(monkeypatch: pytest.MonkeyPatch) -> None:
+    def shortest() -> float:
+        mesh = region_mesh(find_region("300,340,20,50"), MeshRequest(cells=150))
+        inner = (mesh.boundary_vertex[mesh.vertices_on_edge] == 0).all(axis=1)
+        local = hexagon_spacing(mesh.area_cell)[mesh.cells_on_edge[inner]].mean(axis=1)
+        return float((mesh.dv_edge[inner] / local).min())
+
+    wanted = 1.05 * shortest()
+    monkeypatch.setattr(short_edges, "INNER_EDGE", wanted)
+    assert shortest() >= wanted
