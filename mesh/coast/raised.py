@@ -25,8 +25,8 @@ class RaisedDensity:
 
     `width` is in radians, `coast` (n, 3) are points of the coast, much closer together than that. Spacings at the coast
     become factor^(-1/4) of what they would be. How far the coast is takes a search among its points, which is done once
-    on a raster and looked up from then on; widths below some 6 km on the Earth are finer than that raster. Raises `MeshError` unless the width is positive and the factor is 1 at
-    least.
+    on a raster and looked up from then on; widths below some 6 km on the Earth are finer than that raster. Raises
+    `MeshError` unless the width is positive and the factor is 1 at least.
     """
 
     density: Density

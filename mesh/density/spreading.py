@@ -1,9 +1,9 @@
 """Points spread over a part of the sphere as a density asks, without chance in how many stand where.
 
-Patches of the sphere (`mesh.geometry.cube`) are cut in four, again and again, where they would hold more than a share of
-a point. Points are then dealt out along a space-filling curve through the squares, one whenever enough has been passed.
-Their number in any area is right but for its rim, so that a descent has nothing to carry over long ways, as it has from
-points drawn at random.
+Patches of the sphere (`mesh.geometry.cube`) are cut in four, again and again, where they would hold more than a share
+of a point. Points are then dealt out along a space-filling curve through the squares, one whenever enough has been
+passed. Their number in any area is right but for its rim, so that a descent has nothing to carry over long ways, as it
+has from points drawn at random.
 """
 
 import math
@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.density.named import Density, density_at
@@ -46,7 +47,7 @@ class _Squares:
         """Radians, in the middle of a face, where it is longest."""
         return 2.0 / self.resolution
 
-    def chosen(self, which: Array) -> "_Squares":
+    def chosen(self, which: NDArray[np.bool_]) -> "_Squares":
         return _Squares(
             self.patches[which], self.centers[which], self.masses[which], self.distance[which], self.resolution
         )
@@ -94,13 +95,17 @@ def _quarters(squares: _Squares, density: Density, distance: Callable[[Array], A
     face, square = np.divmod(squares.patches, squares.resolution**2)
     row, column = np.divmod(square, squares.resolution)
     resolution = 2 * squares.resolution
-    patches = [(face * resolution + 2 * row + up) * resolution + 2 * column + right for up in (0, 1) for right in (0, 1)]
+    patches = [
+        (face * resolution + 2 * row + up) * resolution + 2 * column + right for up in (0, 1) for right in (0, 1)
+    ]
     away = np.abs(squares.distance)
     known = np.where(away > squares.width, np.sign(squares.distance) * (away - 0.5 * squares.width), 0.0)
     return _squares(np.concatenate(patches), resolution, density, distance, np.tile(known, 4))
 
 
-def _dealt(count: int, done: list[_Squares], distance: Callable[[Array], Array], generator: np.random.Generator) -> Array:
+def _dealt(
+    count: int, done: list[_Squares], distance: Callable[[Array], Array], generator: np.random.Generator
+) -> Array:
     """Points (count, 3) in squares inside, at equal steps of the mass along a curve through them."""
     inside = [squares.chosen(squares.distance > 0.0) for squares in done]
     centers = np.concatenate([squares.centers for squares in inside])
