@@ -44,7 +44,8 @@ CENTRE, EXTENT = (-45.0, 32.0), (85.0, 70.0)
 ZOOMS = (("Florida and the Bahamas", (-79.0, 27.5), 8.0), ("British Isles", (-4.0, 55.0), 16.0))
 TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 60)
 HEADER = (
-    "| cells | processor minutes | spacing (km) | ratio | q_avg | shortest inner edge | shortest at the coast | off the law |\n"
+    "| cells | processor minutes | spacing (km) | ratio | q_avg | shortest inner edge | shortest at the coast "
+    "| off the law |\n"
     "|---|---|---|---|---|---|---|---|"
 )
 
