@@ -40,7 +40,7 @@ TOLERANCE = 1e-3
 FAR = 3.0
 """Spacings from the coast at which cells do not feel it."""
 
-CENTRE, EXTENT = (-45.0, 32.0), (85.0, 70.0)
+CENTRE, EXTENT = (-46.0, 32.0), (100.0, 70.0)
 ZOOMS = (("Florida and the Bahamas", (-79.0, 27.5), 8.0), ("British Isles", (-4.0, 55.0), 16.0))
 TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 60)
 HEADER = (
@@ -141,7 +141,7 @@ def main(folder: Path, sizes: Sequence[int]) -> None:
     for cells in sizes:
         mesh, minutes = mesh_for(cells, energy, folder)
         print(row_of(mesh, minutes), flush=True)
-        picture(mesh).savefig(folder / f"mesh-{cells}.png", dpi=110)
+        picture(mesh).savefig(folder / f"mesh-{cells}.png", dpi=90)
 
 
 if __name__ == "__main__":
