@@ -7,6 +7,7 @@ coast clips the cells. Writes meshes and pictures, and prints a table. What the 
 import sys
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -29,17 +30,22 @@ from swe.constants import EARTH_RADIUS, SECONDS_PER_DAY
 REGION = "north-atlantic"
 CELLS = (47305, 183907)
 COARSE_CELLS, COARSE_DAYS, SNAPSHOT_DAYS = 5000, 720.0, 20.0
-COAST_WIDTH, COAST_FACTOR = 100.0, 16.0
+COAST_WIDTH, COAST_FACTOR = 100.0, 12.0
 """Width, km, over which the density rises towards the coast, and how many times at the coast."""
+
+FLOOR = 0.2
+"""The least kinetic energy, over the largest: spacings vary by its inverse, and by the fourth root of the factor."""
 
 TOLERANCE = 1e-3
 FAR = 3.0
 """Spacings from the coast at which cells do not feel it."""
 
-CENTRE, EXTENT = (-45.0, 32.0), (85.0, 70.0)
-ZOOMS = (("Cape Hatteras", (-74.0, 36.0), 12.0), ("Lesser Antilles", (-62.0, 12.0), 12.0))
+CENTRE, EXTENT = (-46.0, 32.0), (100.0, 70.0)
+ZOOMS = (("Florida and the Bahamas", (-79.0, 27.5), 8.0), ("British Isles", (-4.0, 55.0), 16.0))
+TICKS = (1, 2, 3, 5, 7, 10, 15, 20, 30, 40, 60)
 HEADER = (
-    "| cells | minutes | spacing (km) | ratio | q_avg | shortest inner edge | shortest at the coast | off the law |\n"
+    "| cells | processor minutes | spacing (km) | ratio | q_avg | shortest inner edge | shortest at the coast "
+    "| off the law |\n"
     "|---|---|---|---|---|---|---|---|"
 )
 
@@ -57,14 +63,15 @@ def energy_of_coarse_run(folder: Path) -> Path:
 
 
 def mesh_for(cells: int, energy: Path, folder: Path) -> tuple[VoronoiMesh, float | None]:
-    """The mesh of so many cells, and the minutes that it took, None where it was there."""
+    """The mesh of so many cells, and the minutes of processor time that it took, None where it was there."""
     path = folder / f"mesh-{cells}.nc"
     if path.exists():
         return read_mesh(path), None
-    begin = time.perf_counter()
+    begin = time.process_time()
     shore = Shore(COAST_WIDTH * 1000.0 / EARTH_RADIUS, COAST_FACTOR)
-    mesh = region_mesh(find_region(REGION), request_for(cells, energy, TOLERANCE), shore=shore)
-    minutes = (time.perf_counter() - begin) / 60.0
+    request = replace(request_for(cells, energy, TOLERANCE), density_floor=FLOOR)
+    mesh = region_mesh(find_region(REGION), request, shore=shore)
+    minutes = (time.process_time() - begin) / 60.0
     write_mesh(mesh, path, "the North Atlantic for the kinetic energy of a double gyre")
     return mesh, minutes
 
@@ -95,14 +102,21 @@ def row_of(mesh: VoronoiMesh, minutes: float | None) -> str:
 
 
 def picture(mesh: VoronoiMesh) -> Figure:
-    """Spacing over the whole sea, and two places from near."""
+    """Spacing over the whole sea, and two places from near, with their cells."""
     spacing = spacing_of(mesh)
-    figure = Figure(figsize=(15.0, 10.0), layout="constrained")
-    whole, *near = figure.subplot_mosaic([["whole", "whole"], ["first", "second"]], height_ratios=[1.3, 1.0]).values()
+    figure = Figure(figsize=(14.0, 8.0), layout="constrained")
+    places = figure.subplot_mosaic([["whole", "first"], ["whole", "second"]], width_ratios=[1.6, 1.0])
+    whole, *near = places.values()
     norm = LogNorm(spacing.min(), spacing.max())
     _map(mesh, spacing, whole, norm, CENTRE, EXTENT, f"North Atlantic, {mesh.n_cells} cells")
     for axes, (name, centre, extent) in zip(near, ZOOMS, strict=True):
-        _map(mesh, spacing, axes, norm, centre, (extent, 0.7 * extent), name)
+        _map(mesh, spacing, axes, norm, centre, (extent, 0.75 * extent), name)
+        axes.collections[-1].set(edgecolor="black", linewidth=0.2)
+    drawn = whole.collections[-1]
+    bar = figure.colorbar(drawn, ax=whole, location="bottom", shrink=0.8, label="spacing (km)")
+    bar.set_ticks([tick for tick in TICKS if spacing.min() <= tick <= spacing.max()])
+    bar.ax.xaxis.set_major_formatter("{x:g}")
+    bar.ax.xaxis.set_minor_formatter("")
     return figure
 
 
@@ -115,7 +129,7 @@ def _map(
     extent: tuple[float, float],
     title: str,
 ) -> None:
-    plot_field(mesh, spacing, axes, centre=centre, extent=extent, norm=norm, label="spacing (km)")
+    plot_field(mesh, spacing, axes, centre=centre, extent=extent, norm=norm, colour_bar=False)
     axes.set_title(title)
 
 
@@ -127,7 +141,7 @@ def main(folder: Path, sizes: Sequence[int]) -> None:
     for cells in sizes:
         mesh, minutes = mesh_for(cells, energy, folder)
         print(row_of(mesh, minutes), flush=True)
-        picture(mesh).savefig(folder / f"mesh-{cells}.png", dpi=110)
+        picture(mesh).savefig(folder / f"mesh-{cells}.png", dpi=90)
 
 
 if __name__ == "__main__":

@@ -44,7 +44,7 @@ def region_mesh(
     """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
 
     The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci`
-    by default, and `random-root` under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by
+    by default, and spread evenly under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by
     default), iterations, seconds and seed. Short edges are mended (`mesh.coast.short_edges`). Raises `MeshError` if no
     such mesh can be made.
     """
@@ -56,7 +56,7 @@ def region_mesh(
     if shore is not None:
         density = RaisedDensity(density, np.concatenate(rings), shore.width, shore.factor)
     coastline = Coastline(rings)
-    points = starting_points(coastline, cells_of(request), density, _start_of(request, density), request.seed)
+    points = starting_points(coastline, cells_of(request), density, request.start, request.seed)
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
 
@@ -108,9 +108,3 @@ def converge_at_sea(
     weight = None if density is uniform else density
     optimizer = Optimizer(points, method=method, density=weight, cells=sea, spacing=spacing)
     return SeaResult(optimizer.run(limits, callback), sea)
-
-
-def _start_of(request: MeshRequest, density: Density) -> str:
-    if request.start is not None:
-        return request.start
-    return "fibonacci" if density is uniform else "random-root"

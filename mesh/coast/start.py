@@ -6,6 +6,7 @@ from mesh.arrays import Array
 from mesh.coast.coastline import Coastline
 from mesh.density.named import Density, density_at, uniform
 from mesh.density.scaling import PROBES
+from mesh.density.spreading import ZERO_DENSITY, spread_points
 from mesh.errors import MeshError
 from mesh.generation.generators import DEFAULT_SEED, random_points
 from mesh.geometry.sphere import fibonacci_points
@@ -32,16 +33,20 @@ def fillers(coastline: Coastline, spacing: float) -> Array:
 
 
 def starting_points(
-    coastline: Coastline, cells: int, density: Density = uniform, start: str = "fibonacci", seed: int = DEFAULT_SEED
+    coastline: Coastline, cells: int, density: Density = uniform, start: str | None = None, seed: int = DEFAULT_SEED
 ) -> Array:
-    """Points (cells, 3) in the sea, along a space-filling curve: on the Fibonacci spiral, or drawn from the density.
+    """Points (cells, 3) in the sea, along a space-filling curve: on the Fibonacci spiral, or as the density asks.
 
     `start` is `fibonacci`, `random` (drawn from the density) or `random-root` (from its square root, which converges
-    sooner). Raises `MeshError` for fewer than 12 cells, an unknown start, or a density that is zero at sea.
+    sooner). By default it is the first under uniform density; under another one points are spread evenly as its square
+    root asks, which takes no drawing at all. Raises `MeshError` for fewer than 12 cells, an unknown start, or a density
+    that is zero at sea.
     """
     if cells < FEWEST_CELLS:
         raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {FEWEST_CELLS}")
-    if start == "fibonacci":
+    if start is None and density is not uniform:
+        points = spread_points(cells, lambda points: np.sqrt(density_at(density, points)), coastline.distance, seed)
+    elif start in (None, "fibonacci"):
         points = _spiral(coastline, cells)
     elif start in ("random", "random-root"):
         points = _drawn(coastline, cells, density, 1.0 if start == "random" else 0.5, seed)
@@ -70,8 +75,8 @@ def _drawn(coastline: Coastline, cells: int, density: Density, power: float, see
         values = density_at(density, points) ** power
         return np.where(coastline.contains(points), values, 0.0)
 
-    if not at_sea(fibonacci_points(PROBES)).any():
-        raise MeshError(
-            "the density is zero wherever it was tried at sea; give one that is positive there, or a floor above zero"
-        )
+    probes = fibonacci_points(PROBES)
+    probes = probes[coastline.contains(probes)]
+    if len(probes) and not at_sea(probes).any():
+        raise MeshError(ZERO_DENSITY)
     return random_points(cells, at_sea, generator)

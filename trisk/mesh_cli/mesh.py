@@ -78,7 +78,7 @@ def mesh(
             "--start",
             help="icosahedral, fibonacci, random or random-root; by default the first, or the "
             "second where the first has no such mesh, and under a density from coarse meshes; with a coast the second, "
-            "or the last under a density.",
+            "or under a density points dealt out as it asks.",
         ),
     ] = DEFAULTS.start,
     seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,
