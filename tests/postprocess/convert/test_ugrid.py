@@ -39,10 +39,14 @@ def test_compliance_checker_finds_no_error(file: Path, tmp_path: Path) -> None:
     CF has them since 1.11; the checker objects to each of them, and to more than one, and to nothing else.
     """
     pytest.importorskip("compliance_checker")
-    program = "from compliance_checker.cf.cf import *; from cchecker import main; main()"
     report = tmp_path / "report.json"
-    options = ["-t", "cf:1.11", "-f", "json", "-o", report, file]
-    done = subprocess.run([sys.executable, "-c", program, *options], capture_output=True, text=True)
+    arguments = [str(file), ["cf:1.11"], 0, "strict"]
+    program = (
+        "from compliance_checker.runner import CheckSuite, ComplianceChecker; "
+        "CheckSuite.load_all_available_checkers(); "
+        f"ComplianceChecker.run_checker(*{arguments}, output_filename={str(report)!r}, output_format='json')"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert report.exists(), done.stderr
     errors = json.loads(report.read_text())["cf:1.11"]["high_priorities"]
     assert len(errors) > 10
