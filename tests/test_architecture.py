@@ -35,6 +35,7 @@ ROOMS = {
         "compare",
         "figures",
         "film",
+        "convert",
         "studies",
         "reports",
         "adaptation",

@@ -31,6 +31,7 @@ ROOMS = {
         "compare",
         "figures",
         "film",
+        "convert",
         "studies",
         "reports",
         "adaptation",
@@ -105,7 +106,7 @@ def architecture_figure() -> Figure:
     for number, (text, colour) in enumerate(
         (("points, from their start to a file", "#c8641e"), ("thickness, from the case to a picture", "#1f5fa8"))
     ):
-        axes.text(3.6 * (WIDTH + 2 * GAP), 5.6 - 0.4 * number, text, color=colour, ha="center", fontsize=10)
+        axes.text(3.6 * (WIDTH + 2 * GAP), 8.0 - 0.4 * number, text, color=colour, ha="center", fontsize=10)
     axes.set_xlim(-1.6, 4 * (WIDTH + 2.0 * GAP) + 1.1)
     axes.set_ylim(-1.1, (max(map(len, ROOMS.values())) - 1) * (HEIGHT + GAP) + 0.6)
     axes.set_aspect("equal")

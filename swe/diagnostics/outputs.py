@@ -78,17 +78,27 @@ class Evaluation:
 
 @dataclass(frozen=True)
 class Field:
-    """A field that snapshots hold: where it lives, its units, meaning and CF standard name, if there is one."""
+    """A field that snapshots hold: where it lives, its units, meaning and CF standard name, if there is one.
+
+    `cell_mean` tells that the values are means over cells, by which the scheme conserves the field.
+    """
 
     place: str
     units: str
     meaning: str
     value: Callable[[Evaluation], Array]
     standard_name: str = ""
+    cell_mean: bool = False
+
+    def cell_methods(self, time: str) -> str:
+        """How values stand for their cells and moments, as CF says it; `time` is the name of the time coordinate."""
+        return f"{'area: mean ' if self.cell_mean else ''}{time}: point"
 
 
 FIELDS = {
-    "thickness": Field(CELLS, "m", "thickness of the fluid", lambda now: now.state.thickness),
+    "thickness": Field(
+        CELLS, "m", "thickness of the fluid", lambda now: now.state.thickness, "cell_thickness", cell_mean=True
+    ),
     "surface_height": Field(
         CELLS,
         "m",
@@ -100,6 +110,7 @@ FIELDS = {
         "m2 s-2",
         "kinetic energy per unit mass",
         lambda now: now.diagnosis.kinetic_energy,
+        "specific_kinetic_energy_of_air",
     ),
     "velocity_zonal": Field(
         CELLS,

@@ -67,6 +67,7 @@ def _create_history(path: Path, run: RunDescription, description: Mapping[str, A
             _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
             for name in run.fields:
                 _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
+                file[name].cell_methods = FIELDS[name].cell_methods(TIME_COORDINATE)
         fill_variables(file, mesh, slabs, GEOMETRY)
         file["topography"][:] = topography
 

@@ -15,6 +15,8 @@ from swe import InputError, Simulation
 from swe.diagnostics.outputs import FIELDS, TOPOGRAPHY, Field, chosen_fields
 
 STANDARD_NAMES = {
+    "thickness": "cell_thickness",
+    "kinetic_energy": "specific_kinetic_energy_of_air",
     "velocity_zonal": "eastward_wind",
     "velocity_meridional": "northward_wind",
     "relative_vorticity": "atmosphere_relative_vorticity",
@@ -33,6 +35,14 @@ def test_the_history_says_what_the_table_says(mountain_run: Path) -> None:
         "potential_vorticity",
     }
     assert {name for name, place in places.items() if place == "nEdges"} == {"normal_velocity"}
+
+
+def test_the_history_says_how_values_stand_for_cells_and_moments(mountain_run: Path) -> None:
+    with netCDF4.Dataset(mountain_run / "history.nc") as file:
+        methods = {name: file[name].cell_methods for name in FIELDS}
+        assert "cell_methods" not in file["topography"].ncattrs()
+    assert methods.pop("thickness") == "area: mean Time: point"
+    assert set(methods.values()) == {"Time: point"}
 
 
 def test_a_run_writes_the_fields_that_are_asked_for(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
