@@ -28,7 +28,7 @@ ROOMS = {
     ],
     "swe": ["", "parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
     "cases": [""],
-    "postprocess": ["", "runs", "reference", "compare", "figures", "studies", "adaptation"],
+    "postprocess": ["", "runs", "reference", "compare", "figures", "view", "studies", "adaptation"],
     "trisk": ["processes", "report", "arguments", "cli", "mesh_cli", "results_cli", ""],
 }
 """Rooms of each package; one may use those that stand before it. The package itself is the first."""

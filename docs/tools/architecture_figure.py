@@ -25,7 +25,7 @@ ROOMS = {
     ),
     "swe": ("parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
     "cases": (),
-    "postprocess": ("runs", "reference", "compare", "figures", "studies", "adaptation"),
+    "postprocess": ("runs", "reference", "compare", "figures", "view", "studies", "adaptation"),
     "trisk": ("processes", "report", "arguments", "cli", "mesh_cli", "results_cli"),
 }
 """Rooms of each package in the order of imports, the lowest first, as `tests/test_architecture.py` holds it."""
