@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array
 from mesh.safe_files import AnyPath, written_aside
@@ -108,7 +109,7 @@ def _paired(runs: Sequence[Run], names: Sequence[str]) -> Iterator[tuple[PageFie
     yield from zip(*(history_fields(run, names) for run in runs), strict=True)
 
 
-def _packed_field(fields: Sequence[PageField], rows: Sequence[Array], bits: int) -> dict[str, Any]:
+def _packed_field(fields: Sequence[PageField], rows: Sequence[NDArray[np.intp]], bits: int) -> dict[str, Any]:
     """A field of one run, or of two and their difference."""
     field = fields[0]
     values = [_taken(each.values, row) for each, row in zip(fields, rows, strict=False)]
@@ -128,7 +129,7 @@ def _packed_field(fields: Sequence[PageField], rows: Sequence[Array], bits: int)
     }
 
 
-def _taken(values: Array, rows: Array) -> Array:
+def _taken(values: Array, rows: NDArray[np.intp]) -> Array:
     return values[rows] if len(values) > 1 else values
 
 
@@ -145,7 +146,7 @@ def _packed_values(values: Array, bits: int, limits: tuple[float, float]) -> dic
     return {"low": whole.low, "high": whole.high, "values": packed_rows(whole.numbers, bits)}
 
 
-def _common_rows(runs: Sequence[Run]) -> list[Array]:
+def _common_rows(runs: Sequence[Run]) -> list[NDArray[np.intp]]:
     """The snapshots of each run, by number, of the days that all have; raise `InputError` where there is none."""
     if len(runs) == 1:
         return [np.arange(len(runs[0].days))]

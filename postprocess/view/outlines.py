@@ -23,7 +23,10 @@ NUMBER_BITS = 24
 
 
 def packed_outlines(mesh: VoronoiMesh, places: set[str]) -> dict[str, Any]:
-    """Points, rings of each of the `places` that fields live at, and the coast, as the page reads them."""
+    """Points, rings of each of the `places` that fields live at, and the coast, as the page reads them.
+
+    The `spacing` is the shortest distance between neighbouring cells, in radii of the sphere.
+    """
     longitude, latitude = _angles(mesh, with_edges=has_walls(mesh) or EDGES in places)
     top = 2**ANGLE_BITS - 1
     return {
@@ -33,6 +36,7 @@ def packed_outlines(mesh: VoronoiMesh, places: set[str]) -> dict[str, Any]:
         "cellPoints": [mesh.n_vertices, mesh.n_cells],
         "longitude": packed_list(np.rint(longitude % TURN / TURN * top).astype(np.int64), ANGLE_BITS),
         "latitude": packed_list(np.rint((latitude / np.pi + 0.5) * top).astype(np.int64), ANGLE_BITS),
+        "spacing": float(mesh.dc_edge.min() / mesh.sphere_radius),
         "closed": not has_walls(mesh),
         "coast": _packed_coast(mesh),
         "places": {place: _packed_rings(*rings_of(mesh, place)) for place in sorted(places)},

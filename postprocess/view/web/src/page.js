@@ -7,14 +7,28 @@ import { Field, rounded } from "./fields.js";
 import { inDigits, placeInWords, powerFor, tenTo } from "./numbers.js";
 import { coastOf, pointsOf, ringsOf } from "./outlines.js";
 import { Picker } from "./picking.js";
-import { aboutZero, clamp, pointOf, PROJECTIONS } from "./projections.js";
+import { aboutZero, clamp, placeOf, pointOf, PROJECTIONS } from "./projections.js";
 import { Picture } from "./scene.js";
 import { bytesOf } from "./unpack.js";
 
 const NOUNS = { nCells: "cell", nEdges: "edge", nVertices: "vertex" };
 const MILLISECONDS_A_SNAPSHOT = 160;
-const START = { lon: aboutZero((270 * Math.PI) / 180), lat: (20 * Math.PI) / 180, zoom: 1 };
-const LARGEST_POLYGON = 300; // pixels, at the closest view
+const START = { lon: -Math.PI / 2, lat: Math.PI / 9, zoom: 1 };
+const SOME = 4; // magnification that every mesh allows; others allow as much as brings one cell to fill the picture
+
+/** A view of all cells of a mesh that does not cover the globe. */
+function overSea({ xyz }, [first, count]) {
+  const sum = [0, 0, 0];
+  for (let i = 3 * first; i < 3 * (first + count); i++) sum[i % 3] += xyz[i];
+  const length = Math.hypot(...sum) || 1;
+  let nearest = 1;
+  for (let i = first; i < first + count; i++) {
+    const along = (xyz[3 * i] * sum[0] + xyz[3 * i + 1] * sum[1] + xyz[3 * i + 2] * sum[2]) / length;
+    nearest = Math.min(nearest, along);
+  }
+  const reach = nearest > 0 ? Math.sqrt(1 - nearest * nearest) : 1;
+  return { ...placeOf(sum), zoom: Math.max(1, 0.8 / Math.max(reach, 1e-6)) };
+}
 
 const part = (id) => document.getElementById(id);
 
@@ -27,7 +41,7 @@ class Page {
     this.state = { camera: { ...START }, projection: "globe", row: 0, panes: this.panes, pointed: -1 };
     this.places = {};
     this.pointer = null;
-    this.closest = Math.sqrt(content.mesh.cellPoints[1]) * (LARGEST_POLYGON / 1000);
+    this.closest = Math.max(SOME, 1 / content.mesh.spacing);
   }
 
   async open() {
@@ -35,6 +49,8 @@ class Page {
     for (const palette of this.palettes) palette.texture = this.picture.palette(palette.colours);
     this.fill();
     this.points = await pointsOf(this.content.mesh);
+    this.start = this.content.mesh.closed ? START : overSea(this.points, this.content.mesh.cellPoints);
+    this.state.camera = { ...this.start };
     this.picture.addCoast(this.points, await coastOf(this.content.mesh));
     await this.choose(0);
     this.listen();
@@ -57,7 +73,7 @@ class Page {
     part("range").addEventListener("change", () => this.colour());
     part("projection").addEventListener("change", (event) => this.project(event.target.value));
     part("whole").addEventListener("click", () => {
-      this.state.camera = { ...START };
+      this.state.camera = { ...this.start };
       this.move();
     });
     part("slider").addEventListener("input", (event) => this.show(Number(event.target.value)));
@@ -162,7 +178,7 @@ class Page {
   zoom(factor, x = null, y = null) {
     const { camera } = this.state;
     const before = x === null ? null : this.seen(x, y)?.place;
-    camera.zoom = clamp(camera.zoom * factor, 0.5, Math.max(4, this.closest));
+    camera.zoom = clamp(camera.zoom * factor, 0.5, this.closest);
     const after = before && this.seen(x, y)?.place;
     if (after) {
       camera.lon = aboutZero(camera.lon + aboutZero(before.lon - after.lon));
@@ -173,9 +189,10 @@ class Page {
 
   /** The pane and the place at a point of the stage; null where no place is seen. */
   seen(x, y) {
-    const { width, height, scale, middle } = this.picture.framing(this.state);
-    const pane = clamp(Math.floor(x / width), 0, this.panes - 1);
-    const [right, up] = [(x - (pane + 0.5) * width) / scale + middle[0], (height / 2 - y) / scale + middle[1]];
+    const { width, height, boxes, scale, middle } = this.picture.framing(this.state);
+    const pane = boxes.findIndex((box) => x >= box.x && x < box.x + width && y >= box.y && y < box.y + height);
+    if (pane < 0) return null;
+    const [right, up] = [(x - boxes[pane].x - width / 2) / scale + middle[0], (height / 2 - y + boxes[pane].y) / scale + middle[1]];
     const place = PROJECTIONS[this.state.projection].place(right, up, this.state.camera);
     return place && { pane, place };
   }
@@ -219,6 +236,13 @@ class Page {
     return `${which}${step > 0 && power !== 0 ? `(${number})` : number}${units ? ` ${units}` : ""}`;
   }
 
+  placeTitles() {
+    const { width, boxes } = this.picture.framing(this.state);
+    [...part("titles").children].forEach((title, pane) => {
+      title.style.cssText = `left:${boxes[pane].x}px;top:${boxes[pane].y}px;width:${width}px`;
+    });
+  }
+
   redraw() {
     this.waiting ??= requestAnimationFrame(() => {
       this.waiting = undefined;
@@ -228,6 +252,7 @@ class Page {
 
   draw() {
     const { field, place, textures } = this.shown;
+    this.placeTitles();
     const land = getComputedStyle(document.documentElement).getPropertyValue("--land").trim();
     this.picture.uniforms.land.value.set(...[1, 3, 5].map((k) => parseInt(land.slice(k, k + 2), 16) / 255));
     const panes = textures.map((texture, pane) => {

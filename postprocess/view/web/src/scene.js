@@ -7,6 +7,17 @@ import { axesOf, PROJECTIONS } from "./projections.js";
 const ACROSS = 2048; // values in a row of a texture
 const MARGIN = 0.94;
 
+/** Boxes of equal panes, in columns and rows such that the view is as large as can be. */
+function arranged(count, size, projection) {
+  const choices = [1, 2, 3].filter((columns) => columns <= count).map((columns) => {
+    const [width, height] = [size.width / columns, size.height / Math.ceil(count / columns)];
+    return { columns, width, height, fit: Math.min(width / projection.width, height / projection.height) };
+  });
+  const { columns, width, height } = choices.reduce((best, each) => (each.fit > best.fit ? each : best));
+  const boxes = Array.from({ length: count }, (_, i) => ({ x: (i % columns) * width, y: Math.floor(i / columns) * height }));
+  return { width, height, boxes };
+}
+
 export class Picture {
   constructor(canvas) {
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
@@ -84,13 +95,12 @@ export class Picture {
     return { width: Math.max(1, clientWidth), height: Math.max(1, clientHeight) };
   }
 
-  /** How a pane lies: its width, pixels for a radius of the sphere, and the middle of the picture on the view. */
+  /** How panes lie: their boxes, pixels for a radius of the sphere, and the middle of each pane on the view. */
   framing(state) {
-    const { width: all, height } = this.size();
-    const width = all / state.panes;
     const projection = PROJECTIONS[state.projection];
+    const { width, height, boxes } = arranged(state.panes, this.size(), projection);
     const scale = MARGIN * Math.min(width / projection.width, height / projection.height) * state.camera.zoom;
-    return { width, height, scale, middle: projection.middle(state.camera, height / 2 / scale) };
+    return { width, height, boxes, scale, middle: projection.middle(state.camera, height / 2 / scale) };
   }
 
   /** Draw all panes; `panes` have `texture`, `missing`, `palette`, `scale` and `offset` to tones. */
@@ -101,11 +111,11 @@ export class Picture {
     if (renderer.getPixelRatio() !== density) renderer.setPixelRatio(density);
     const now = renderer.getSize(new Vector2());
     if (now.x !== size.width || now.y !== size.height) renderer.setSize(size.width, size.height, false);
-    const { width, height, scale, middle } = this.framing(state);
+    const { width, height, boxes, scale, middle } = this.framing(state);
     uniforms.scale.value.set((2 * scale) / width, (2 * scale) / height);
     uniforms.shift.value.set(-middle[0] * uniforms.scale.value.x, -middle[1] * uniforms.scale.value.y);
-    const { width: across, height: up } = PROJECTIONS[state.projection];
-    uniforms.half_.value.set(across / 2, up / 2);
+    const { width: across, height: high } = PROJECTIONS[state.projection];
+    uniforms.half_.value.set(across / 2, high / 2);
     uniforms.view.value.set(...axesOf(state.camera).flat());
     uniforms.middle.value = state.camera.lon;
     uniforms.pixels.value.set((width * density) / 2, (height * density) / 2);
@@ -123,8 +133,9 @@ export class Picture {
       uniforms.missing.value = pane.missing;
       uniforms.toTone.value.set(pane.scale, pane.offset);
       uniforms.palette.value = pane.palette;
-      renderer.setViewport(i * width, 0, width, height);
-      renderer.setScissor(i * width, 0, width, height);
+      const up = size.height - boxes[i].y - height;
+      renderer.setViewport(boxes[i].x, up, width, height);
+      renderer.setScissor(boxes[i].x, up, width, height);
       renderer.clear();
       renderer.render(this.scene, this.eye);
     });
