@@ -23,53 +23,95 @@ function holdsPole(corners, pole) {
   });
 }
 
-/** Corners of one polygon as [x, y, z, lon, lat], long sides cut into pieces. */
-function outline(points, rings, start, end) {
-  const corners = [];
-  for (let k = start; k < end; k++) {
-    const a = rings[k];
-    const b = rings[k + 1 < end ? k + 1 : start];
-    const [x, y, z] = points.xyz.subarray(3 * a, 3 * a + 3);
-    corners.push([x, y, z, points.lon[a], points.lat[a]]);
-    const count = pieces(points, a, b);
-    for (let i = 1; i < count; i++) {
-      const share = i / count;
-      corners.push(unit([0, 1, 2].map((axis) => (1 - share) * points.xyz[3 * a + axis] + share * points.xyz[3 * b + axis])));
-    }
-  }
-  return corners;
+/** Points as [x, y, z, lon, lat, cosine and sine of Mollweide's angle]. */
+function cornersOf({ xyz, lon, lat }) {
+  return Array.from(lon, (_, i) => onBoth(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2], lon[i], lat[i]));
 }
 
-function unit([x, y, z]) {
+function onBoth(x, y, z, lon, lat) {
+  const angle = mollweideAngle(lat);
+  return [x, y, z, lon, lat, Math.cos(angle), Math.sin(angle)];
+}
+
+/** Corners of one polygon, long sides cut into pieces. */
+function outline(points, corners, rings, start, end) {
+  const found = [];
+  for (let k = start; k < end; k++) {
+    const [a, b] = [rings[k], rings[k + 1 < end ? k + 1 : start]];
+    found.push(corners[a]);
+    const count = pieces(points, a, b);
+    for (let i = 1; i < count; i++) found.push(between(corners[a], corners[b], i / count));
+  }
+  return found;
+}
+
+function between(a, b, share) {
+  return unit((1 - share) * a[0] + share * b[0], (1 - share) * a[1] + share * b[1], (1 - share) * a[2] + share * b[2]);
+}
+
+function unit(x, y, z) {
   const length = Math.hypot(x, y, z);
-  return [x / length, y / length, z / length, Math.atan2(y, x), Math.asin(z / length)];
+  return onBoth(x / length, y / length, z / length, Math.atan2(y, x), Math.asin(Math.min(1, Math.max(-1, z / length))));
 }
 
 function middle(corners) {
-  const sum = [0, 0, 0];
-  for (const corner of corners) for (let axis = 0; axis < 3; axis++) sum[axis] += corner[axis];
-  return unit(sum);
+  let [x, y, z] = [0, 0, 0];
+  for (const corner of corners) {
+    x += corner[0];
+    y += corner[1];
+    z += corner[2];
+  }
+  return unit(x, y, z);
 }
 
-/** Grows as numbers are added. */
-class Numbers {
-  constructor(Kind, size) {
-    this.array = new Kind(size);
-    this.length = 0;
+/** Corners and triangles of fans, in arrays that grow as they are needed. */
+class Fans {
+  constructor(guess) {
+    this.corners = 0;
+    this.used = 0;
+    this.position = new Float32Array(3 * guess);
+    this.onMap = new Float32Array(4 * guess);
+    this.part = new Float32Array(2 * guess);
+    this.index = new Uint32Array(3 * guess);
   }
 
-  add(...values) {
-    if (this.length + values.length > this.array.length) {
-      const longer = new this.array.constructor(2 * this.array.length + values.length);
-      longer.set(this.array);
-      this.array = longer;
-    }
-    for (const value of values) this.array[this.length++] = value;
+  /** Add a corner [x, y, z, lon, lat, cosine and sine of Mollweide's angle]; return its number. */
+  corner([x, y, z, lon, , cosine, sine], number, within, longitude) {
+    const at = this.corners++;
+    if (3 * at >= this.position.length) for (const name of ["position", "onMap", "part"]) this[name] = longer(this[name]);
+    this.position[3 * at] = x;
+    this.position[3 * at + 1] = y;
+    this.position[3 * at + 2] = z;
+    this.onMap[4 * at] = longitude + aboutZero(lon - longitude);
+    this.onMap[4 * at + 1] = cosine;
+    this.onMap[4 * at + 2] = sine;
+    this.onMap[4 * at + 3] = longitude;
+    this.part[2 * at] = number;
+    this.part[2 * at + 1] = within;
+    return at;
+  }
+
+  triangle(a, b, c) {
+    if (this.used >= this.index.length) this.index = longer(this.index);
+    this.index[this.used++] = a;
+    this.index[this.used++] = b;
+    this.index[this.used++] = c;
   }
 
   get filled() {
-    return this.array.subarray(0, this.length);
+    return {
+      position: this.position.subarray(0, 3 * this.corners),
+      onMap: this.onMap.subarray(0, 4 * this.corners),
+      part: this.part.subarray(0, 2 * this.corners),
+      index: this.index.subarray(0, this.used),
+    };
   }
+}
+
+function longer(array) {
+  const grown = new array.constructor(Math.ceil(1.5 * array.length / 12) * 12);
+  grown.set(array);
+  return grown;
 }
 
 /**
@@ -78,36 +120,31 @@ class Numbers {
  * middle, 0 on the rim; `index` three corners for each triangle. `centres` (3 for each polygon) lie within.
  */
 export function fansOf(points, { starts, rings, count }) {
-  const guess = 8 * count;
-  const fans = { position: new Numbers(Float32Array, 3 * guess), onMap: new Numbers(Float32Array, 4 * guess), part: new Numbers(Float32Array, 2 * guess), index: new Numbers(Uint32Array, 18 * count) };
+  const fans = new Fans(starts[count] + 2 * count);
+  const corners = (points.corners ??= cornersOf(points)); // the same for cells and triangles
   const centres = new Float64Array(3 * count);
-  let corner = 0;
-  const add = ([x, y, z, lon, lat], number, within, longitude) => {
-    const angle = mollweideAngle(lat);
-    fans.position.add(x, y, z);
-    fans.onMap.add(longitude + aboutZero(lon - longitude), Math.cos(angle), Math.sin(angle), longitude);
-    fans.part.add(number, within);
-    return corner++;
-  };
   for (let number = 0; number < count; number++) {
-    const ring = outline(points, rings, starts[number], starts[number + 1]);
+    const ring = outline(points, corners, rings, starts[number], starts[number + 1]);
     const centre = middle(ring);
     for (let axis = 0; axis < 3; axis++) centres[3 * number + axis] = centre[axis];
-    const pole = Math.sign(centre[2]);
-    const polar = Math.abs(centre[2]) > 0.7 && holdsPole(ring, pole);
-    const hub = polar ? [0, 0, pole, 0, (pole * Math.PI) / 2] : centre;
-    if (!polar && ring.every((each) => Math.abs(aboutZero(each[3] - hub[3])) < WIDE)) {
-      const first = add(hub, number, 1, hub[3]);
-      for (const each of ring) add(each, number, 0, hub[3]);
-      for (let k = 0; k < ring.length; k++) fans.index.add(first, first + 1 + k, first + 1 + ((k + 1) % ring.length));
-    } else {
-      ring.forEach((each, k) => {
-        const next = ring[(k + 1) % ring.length];
-        const longitude = each[3] + aboutZero(next[3] - each[3]) / 2;
-        const ends = [polar ? [hub[0], hub[1], hub[2], longitude, hub[4]] : hub, each, next];
-        fans.index.add(...ends.map((end, which) => add(end, number, which === 0 ? 1 : 0, longitude)));
-      });
-    }
+    addFan(fans, number, ring, centre);
   }
-  return { position: fans.position.filled, onMap: fans.onMap.filled, part: fans.part.filled, index: fans.index.filled, centres };
+  return { ...fans.filled, centres };
+}
+
+function addFan(fans, number, ring, centre) {
+  const pole = Math.sign(centre[2]);
+  const polar = Math.abs(centre[2]) > 0.7 && holdsPole(ring, pole);
+  if (!polar && ring.every((each) => Math.abs(aboutZero(each[3] - centre[3])) < WIDE)) {
+    const hub = fans.corner(centre, number, 1, centre[3]);
+    for (const each of ring) fans.corner(each, number, 0, centre[3]);
+    for (let k = 1; k <= ring.length; k++) fans.triangle(hub, hub + k, hub + 1 + (k % ring.length));
+    return;
+  }
+  ring.forEach((each, k) => {
+    const next = ring[(k + 1) % ring.length];
+    const longitude = each[3] + aboutZero(next[3] - each[3]) / 2;
+    const hub = polar ? [0, 0, pole, longitude, (pole * Math.PI) / 2, 0, pole] : centre;
+    fans.triangle(fans.corner(hub, number, 1, longitude), fans.corner(each, number, 0, longitude), fans.corner(next, number, 0, longitude));
+  });
 }

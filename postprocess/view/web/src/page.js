@@ -230,7 +230,7 @@ class Page {
     const { low, high } = field.panes[pane];
     const power = powerFor(Math.max(Math.abs(low), Math.abs(high)));
     const step = field.step(pane);
-    const number = `${inDigits(value, step, power)}${step > 0 ? ` ± ${inDigits(step / 2, step / 10, power)}` : ""}`;
+    const number = `${inDigits(value, step, power)}${step > 0 ? ` ± ${inDigits(step / 2, step / 2, power)}` : ""}`;
     const units = [power === 0 ? "" : `× ${tenTo(power)}`, field.units].filter(Boolean).join(" ");
     const which = this.panes === 1 ? "" : `${["first", "second", "difference"][pane]} `;
     return `${which}${step > 0 && power !== 0 ? `(${number})` : number}${units ? ` ${units}` : ""}`;
