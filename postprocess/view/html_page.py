@@ -71,7 +71,8 @@ def _content(runs: Sequence[Run], names: Sequence[str]) -> dict[str, Any]:
     """Everything that the page shows, as `web/src/page.js` reads it."""
     run, mesh = runs[0], runs[0].mesh
     rows = _common_rows(runs)
-    bits = _bits(run, names, len(rows[0]))
+    # Two runs bring their difference too.
+    bits = _bits(run, names, len(rows[0]) * (1 if len(runs) == 1 else 3))
     packed = [_packed_field(fields, rows, bits) for fields in _paired(runs, names)]
     if len(runs) == 1:
         packed += [_packed_field((field,), rows, BITS_OF_THE_MESH) for field in mesh_measures(mesh)]
@@ -98,6 +99,7 @@ def _names(runs: Sequence[Run], chosen: Sequence[str]) -> list[str]:
 
 
 def _bits(run: Run, names: Sequence[str], snapshots: int) -> int:
+    """Bits of each value where there are so many `snapshots` in all panes; names that are not there do not count."""
     places, mesh = history_names(run), run.mesh
     sizes = {"nCells": mesh.n_cells, "nEdges": mesh.n_edges, "nVertices": mesh.n_vertices}
     count = snapshots * sum(sizes[places[name]] for name in names if name in places)

@@ -12,7 +12,7 @@ from PIL import Image
 from mesh import VoronoiMesh
 from mesh.geometry.sphere import from_lonlat, normalize
 from postprocess import open_run
-from postprocess.view.html_page import view_page
+from postprocess.view import view_page
 from tests.postprocess.view.conftest import OpenPage
 
 STEADY = "() => window.trisk.shown && window.trisk.waiting === undefined"

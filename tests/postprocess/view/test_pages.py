@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 
 from postprocess import open_run
-from postprocess.view import html_page
-from postprocess.view.html_page import page_of, view_page
+from postprocess.view import html_page, page_of, view_page
 from swe.errors import InputError
 from tests.postprocess.view.test_packing import unpacked
 
@@ -54,6 +53,9 @@ def test_large_runs_keep_eight_bits(mountain_run: Path, monkeypatch: pytest.Monk
         monkeypatch.setattr(html_page, "MOST_VALUES_OF_16_BITS", most)
         fields = content_of(page_of(open_run(mountain_run)))["fields"]
         assert [field["bits"] for field in fields] == [bits] * 8 + [16] * 3
+    monkeypatch.setattr(html_page, "MOST_VALUES_OF_16_BITS", 3 * values - 1)
+    both = content_of(page_of(open_run(mountain_run), open_run(mountain_run)))
+    assert {field["bits"] for field in both["fields"]} == {8}
 
 
 def test_two_runs_and_their_difference(mountain_run: Path, damped_run: Path) -> None:

@@ -13,6 +13,7 @@ export function followPointer(stage, on) {
     if (event.button !== 0) return;
     stage.setPointerCapture(event.pointerId);
     down.set(event.pointerId, at(event));
+    on.point(...at(event)); // fingers do not hover
   });
   stage.addEventListener("pointermove", (event) => {
     const now = at(event);
@@ -26,6 +27,7 @@ export function followPointer(stage, on) {
       on.zoom(apart(now) / apart(before), (now[0] + other[0]) / 2, (now[1] + other[1]) / 2);
     }
     down.set(event.pointerId, now);
+    on.point(...now);
   });
   for (const name of ["pointerup", "pointercancel"]) stage.addEventListener(name, (event) => down.delete(event.pointerId));
   stage.addEventListener("pointerleave", () => on.leave());
