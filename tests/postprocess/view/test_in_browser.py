@@ -15,6 +15,7 @@ from postprocess import open_run
 from postprocess.view import view_page
 from tests.postprocess.view.conftest import OpenPage
 
+PIXELS_OF_THE_RIM = 4
 STEADY = "() => window.trisk.shown && window.trisk.waiting === undefined"
 
 
@@ -100,7 +101,8 @@ def test_cells_have_their_own_colours(open_page: OpenPage, mountain_page: Path, 
     tab.mouse.wheel(0, -1200)
     settle(tab)
     assert tab.evaluate("window.trisk.state.camera.zoom") >= 4
-    tab.locator("#slider").fill("1")
+    choose_field(tab, "velocity meridional")  # none at the start, so that days look different
+    tab.locator("#slider").fill("2")
     plain, seen = 0, set()
     for right, up in [(20, 30), (260, 150), (-260, -120), (-130, 190), (300, -150)]:
         reading = reading_at(tab, x + right, y - up)
@@ -111,6 +113,27 @@ def test_cells_have_their_own_colours(open_page: OpenPage, mountain_page: Path, 
         seen.add(reading["number"])
     assert plain >= 3
     assert len(seen) >= 4
+
+
+@pytest.mark.parametrize("view", ["globe", "map"])
+@pytest.mark.parametrize(("latitude", "zoom"), [(0.0, 1), (np.pi / 2, 1), (np.pi / 2, 4), (-np.pi / 2, 4)])
+def test_cells_leave_no_gaps(open_page: OpenPage, mountain_page: Path, view: str, latitude: float, zoom: int) -> None:
+    """Nothing of the ground behind shows through, at poles neither."""
+    tab = open_page(mountain_page)
+    tab.locator("#projection").select_option(view)
+    tab.evaluate(f"Object.assign(window.trisk.state.camera, {{lat: {latitude}, zoom: {zoom}}}); window.trisk.move()")
+    settle(tab)
+    shot = np.asarray(Image.open(io.BytesIO(tab.locator("#stage").screenshot())).convert("RGB"), dtype=int)
+    scale, (_, centre) = tab.evaluate(
+        "(({scale, middle}) => [scale, middle])(window.trisk.picture.framing(window.trisk.state))"
+    )
+    up, right = np.indices(shot.shape[:2]) - 0.5 * np.array(shot.shape[:2])[:, None, None]
+    # The outermost pixels are mixed with what is beyond.
+    x, y = (np.abs(right) + PIXELS_OF_THE_RIM) / scale, (np.abs(centre - up / scale) + PIXELS_OF_THE_RIM / scale)
+    inside = x**2 + y**2 < 1.0 if view == "globe" else x**2 / 8.0 + y**2 / 2.0 < 1.0
+    assert np.count_nonzero(inside) > 100_000
+    ground = np.abs(shot - 0xCC).max(axis=2) <= 3
+    assert np.count_nonzero(ground & inside) == 0
 
 
 def test_the_map_has_no_gap_at_its_rim(open_page: OpenPage, mountain_page: Path) -> None:

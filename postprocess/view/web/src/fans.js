@@ -5,6 +5,7 @@ import { aboutZero, mollweideAngle } from "./projections.js";
 const LONG_ARC = 0.12; // radians: longer sides are drawn as several pieces
 const PIECE = 0.06;
 const MOST_PIECES = 64;
+const STRIPS = 12; // of the triangles of wide polygons
 const WIDE = 0.17; // radians of longitude: wider polygons lie near a pole, and have no corners in common on the map
 
 /** Into how many pieces a side is cut: the same seen from both of its polygons. */
@@ -69,6 +70,7 @@ class Fans {
   constructor(guess) {
     this.corners = 0;
     this.used = 0;
+    this.room = guess;
     this.position = new Float32Array(3 * guess);
     this.onMap = new Float32Array(4 * guess);
     this.part = new Float32Array(2 * guess);
@@ -78,7 +80,10 @@ class Fans {
   /** Add a corner [x, y, z, lon, lat, cosine and sine of Mollweide's angle]; return its number. */
   corner([x, y, z, lon, , cosine, sine], number, within, longitude) {
     const at = this.corners++;
-    if (3 * at >= this.position.length) for (const name of ["position", "onMap", "part"]) this[name] = longer(this[name]);
+    if (at === this.room) {
+      for (const name of ["position", "onMap", "part"]) this[name] = doubled(this[name]);
+      this.room *= 2;
+    }
     this.position[3 * at] = x;
     this.position[3 * at + 1] = y;
     this.position[3 * at + 2] = z;
@@ -92,7 +97,7 @@ class Fans {
   }
 
   triangle(a, b, c) {
-    if (this.used >= this.index.length) this.index = longer(this.index);
+    if (this.used === this.index.length) this.index = doubled(this.index);
     this.index[this.used++] = a;
     this.index[this.used++] = b;
     this.index[this.used++] = c;
@@ -108,8 +113,8 @@ class Fans {
   }
 }
 
-function longer(array) {
-  const grown = new array.constructor(Math.ceil(1.5 * array.length / 12) * 12);
+function doubled(array) {
+  const grown = new array.constructor(2 * array.length);
   grown.set(array);
   return grown;
 }
@@ -141,10 +146,24 @@ function addFan(fans, number, ring, centre) {
     for (let k = 1; k <= ring.length; k++) fans.triangle(hub, hub + k, hub + 1 + (k % ring.length));
     return;
   }
-  ring.forEach((each, k) => {
-    const next = ring[(k + 1) % ring.length];
-    const longitude = each[3] + aboutZero(next[3] - each[3]) / 2;
-    const hub = polar ? [0, 0, pole, longitude, (pole * Math.PI) / 2, 0, pole] : centre;
-    fans.triangle(fans.corner(hub, number, 1, longitude), fans.corner(each, number, 0, longitude), fans.corner(next, number, 0, longitude));
-  });
+  const hub = polar ? [0, 0, pole, 0, (pole * Math.PI) / 2, 0, pole] : centre;
+  ring.forEach((each, k) => addSector(fans, number, hub, each, ring[(k + 1) % ring.length], polar));
+}
+
+/** A triangle of a wide polygon, in strips: the map bends its sides, most of all those that end at a pole. */
+function addSector(fans, number, hub, first, last, polar) {
+  const longitude = first[3] + aboutZero(last[3] - first[3]) / 2;
+  const tip = polar ? [...hub.slice(0, 3), longitude, ...hub.slice(4)] : hub;
+  let before = null;
+  for (let strip = 1; strip <= STRIPS; strip++) {
+    const share = polar ? (strip / STRIPS) ** 2 : strip / STRIPS;
+    const ends = [first, last].map((end) => fans.corner(between(hub, end, share), number, 1 - share, longitude));
+    if (before === null) {
+      fans.triangle(fans.corner(tip, number, 1, longitude), ...ends);
+    } else {
+      fans.triangle(before[0], ends[0], ends[1]);
+      fans.triangle(before[0], ends[1], before[1]);
+    }
+    before = ends;
+  }
 }
