@@ -186,6 +186,10 @@ def test_land_is_empty(open_page: OpenPage, sea_run: Path, tmp_path: Path) -> No
     assert tab.evaluate("window.trisk.reading") is None
     assert tab.locator("#reading").inner_text().startswith("land at 0.0")
     np.testing.assert_array_equal(colour_at(tab, x, y - 12), [0xCC] * 3)  # the equator has a line
+    tab.evaluate("Object.assign(window.trisk.state.camera, {lon: Math.PI, zoom: 2}); window.trisk.move()")
+    settle(tab)
+    inside, colours = inside_of(tab, "globe")
+    assert np.count_nonzero(inside & (np.abs(colours - 0xCC).max(axis=2) <= 3)) == 0
     tab.locator("#projection").select_option("map")
     reading = reading_at(tab, x + 300, y)
     assert reading["number"] == nearest(open_run(sea_run).mesh.cell_points, reading["place"])
