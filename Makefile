@@ -13,9 +13,11 @@ SEED := 1
 .SECONDARY:
 .PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling north-atlantic clean
 
-tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures
+tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures and a page for the browser
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
 	$(BIN)/trisk plot $(RUN)
+	$(BIN)/trisk view $(RUN) -o $(RUN)/run.html --quiet
+	@echo "open $(abspath $(RUN)/run.html) in a browser to look at the run"
 
 runs/mesh.%.nc: | $(VENV)/installed
 	mkdir -p runs

@@ -35,6 +35,7 @@ ROOMS = {
         "compare",
         "figures",
         "film",
+        "view",
         "convert",
         "studies",
         "reports",

@@ -21,6 +21,8 @@ venv/bin/trisk mesh --cells 162 -o mesh.nc
 venv/bin/trisk run williamson5 --mesh mesh.nc --days 1 -o run
 venv/bin/trisk plot run
 test -s run/figures/potential_vorticity.png
+venv/bin/trisk view run -o run.html
+test -s run.html
 venv/bin/python - <<'EOF'
 import json
 import pathlib

@@ -17,11 +17,11 @@ from trisk.mesh_cli import cull, mesh, partition, quality
 from trisk.processes.launch import launch_of
 from trisk.processes.together import run_together
 from trisk.report.streams import ErrorOutput
-from trisk.results_cli import compare, convert, film, plot, spectra
+from trisk.results_cli import compare, convert, film, plot, spectra, view
 
 COMMANDS = (
     *(mesh.mesh, cull.cull, quality.quality, partition.partition, run.run, cases.cases),
-    *(plot.plot, film.film, convert.convert, spectra.spectra),
+    *(plot.plot, view.view, film.film, convert.convert, spectra.spectra),
     *(reference.reference, compare.compare, adapt.adapt, bench.bench),
 )
 """In the order of the help."""

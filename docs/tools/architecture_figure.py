@@ -31,6 +31,7 @@ ROOMS = {
         "compare",
         "figures",
         "film",
+        "view",
         "convert",
         "studies",
         "reports",

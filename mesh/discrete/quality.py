@@ -138,6 +138,20 @@ def obtuse_triangles(mesh: VoronoiMesh, chords: Array | None = None) -> NDArray[
 
 def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
     """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
+    distances, spacing = _centroid_distances(mesh, density)
+    if mesh.fixed_cells is not None:
+        distances = distances[~mesh.fixed_cells]
+    return float(distances.max(initial=0.0)) / spacing
+
+
+def centroid_offsets(mesh: VoronoiMesh, density: Density) -> Array:
+    """Distances (n_cells,) from all generators to the constrained centroids of their cells, in mean spacings."""
+    distances, spacing = _centroid_distances(mesh, density)
+    return distances / spacing
+
+
+def _centroid_distances(mesh: VoronoiMesh, density: Density) -> tuple[Array, float]:
+    """Distances (n_cells,) from generators to centroids, and the mean spacing, both on the unit sphere."""
     points, spacing = normalize(mesh.cell_points), mean_spacing(mesh.n_cells)
     if has_walls(mesh):
         cells = (points, normalize(mesh.vertex_points), *_vertex_rings(mesh))
@@ -147,12 +161,8 @@ def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
         cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
     if density is uniform:
         _, moment, _ = masses_and_moments(*cells)
-        distances = arc_length(points, normalize(moment))
-    else:
-        distances = centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
-    if mesh.fixed_cells is not None:
-        distances = distances[~mesh.fixed_cells]
-    return float(distances.max(initial=0.0)) / spacing
+        return arc_length(points, normalize(moment)), spacing
+    return centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells)), spacing
 
 
 def _vertex_rings(mesh: VoronoiMesh) -> tuple[Index, Index]:

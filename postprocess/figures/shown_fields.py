@@ -118,7 +118,12 @@ def _is_length(variable: MeshVariable) -> bool:
 def _label(name: str, units: str) -> str:
     """What the name says before its first comma, and units in print, as in "kinetic energy (m² s⁻²)"."""
     name, *_ = name.split(",")
+    printed = printed_units(units)
+    return f"{name} ({printed})".strip() if printed else name
+
+
+def printed_units(units: str) -> str:
+    """Units in print, as in "m² s⁻²"; empty where there are none."""
     if units in ("", "1"):
-        return name
-    printed = re.sub(r"(?<=[A-Za-z])-?\d+", lambda power: power.group().translate(SUPERSCRIPTS), units)
-    return f"{name} ({printed})".strip()
+        return ""
+    return re.sub(r"(?<=[A-Za-z])-?\d+", lambda power: power.group().translate(SUPERSCRIPTS), units)

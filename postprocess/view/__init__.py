@@ -1,0 +1,5 @@
+"""Runs as pages for a browser: the globe, a map, the values of every cell."""
+
+from postprocess.view.html_page import page_of, view_page
+
+__all__ = ["page_of", "view_page"]

@@ -1,0 +1,41 @@
+"""`trisk view`: a run as a page for a browser."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from trisk.cli.options import Quiet
+
+
+def view(
+    run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
+    output: Annotated[Path, typer.Option("--output", "-o", help="HTML file to write.")],
+    other_directory: Annotated[
+        Path | None, typer.Argument(help="Another run on the same mesh, shown beside it with their difference.")
+    ] = None,
+    fields: Annotated[
+        str | None,
+        typer.Option(
+            "--fields",
+            help="Fields of the page, as in thickness,normal_velocity; by default all that the snapshots hold at "
+            "cells and vertices.",
+        ),
+    ] = None,
+    quiet: Quiet = False,
+) -> None:
+    """Make a page that shows a run, or two, in a browser.
+
+    The page needs no network: it holds the cells and all snapshots.
+    """
+    from postprocess.runs.reading import read_run
+    from postprocess.view import view_page
+
+    other = None if other_directory is None else read_run(other_directory)
+    path = view_page(read_run(run_directory), output, other, _names(fields))
+    if not quiet:
+        typer.echo(path)
+
+
+def _names(fields: str | None) -> list[str]:
+    return [] if fields is None else [name.strip() for name in fields.split(",")]
