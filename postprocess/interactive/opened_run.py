@@ -1,5 +1,6 @@
 """The run that `open_run` gives to users: files read on first use, and maps of its fields."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -10,10 +11,12 @@ from postprocess.runs.reading import Run, open_as
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+    from postprocess.interactive.page import Page
+
 
 @dataclass(frozen=True, eq=False, repr=False)
 class OpenedRun(Run):
-    """A run that draws itself; see `postprocess.runs.reading.Run` for what it holds."""
+    """A run that draws and shows itself; see `postprocess.runs.reading.Run` for what it holds."""
 
     def plot(
         self,
@@ -34,6 +37,17 @@ class OpenedRun(Run):
 
         time = -1 if day is None else self.number_of(day)
         return plot_field(self, field, ax, time=time, region=region, **options)
+
+    def view(self, other: Run | None = None, *, fields: Sequence[str] = ()) -> "Page":
+        """The page with the globe that `trisk view` writes; a notebook shows it, and `save` writes it to a file.
+
+        With an `other` run on the same mesh it shows both and their difference. `fields` are those of the history, by
+        default all but those at edges. Raises `InputError` as `postprocess.view.view_page` does.
+        """
+        from postprocess.interactive.page import Page
+        from postprocess.view import page_of
+
+        return Page(page_of(self, other, fields), self.directory.name)
 
 
 def open_run(directory: AnyPath) -> OpenedRun:

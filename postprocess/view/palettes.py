@@ -1,10 +1,12 @@
-"""Colour tables of a page: those of cmocean where it is installed, and some of matplotlib's."""
+"""Colour tables of a page: those of the figures, and some of matplotlib's."""
 
 import base64
 
 import numpy as np
 from matplotlib import colormaps
 from matplotlib.colors import Colormap
+
+from postprocess.figures.palettes import palette
 
 COLOURS = 256
 
@@ -16,21 +18,13 @@ DIVERGING = frozenset({"balance", "curl", "RdBu_r", "PuOr_r"})
 
 def packed_palettes() -> list[dict[str, object]]:
     """Name, kind and colours of each palette, three bytes a colour from the lowest to the highest value."""
+    maps: dict[str, Colormap] = {name: palette(name) for name in OF_CMOCEAN}
+    maps |= {name: colormaps[name] for name in OF_MATPLOTLIB}
     return [
-        {"name": name, "diverging": name in DIVERGING, "colours": _packed(palette)}
-        for name, palette in _palettes().items()
+        {"name": name, "diverging": name in DIVERGING, "colours": _packed(colours)} for name, colours in maps.items()
     ]
 
 
-def _palettes() -> dict[str, Colormap]:
-    palettes = {name: colormaps[name] for name in OF_MATPLOTLIB}
-    try:
-        import cmocean
-    except ImportError:
-        return palettes
-    return {**{name: getattr(cmocean.cm, name) for name in OF_CMOCEAN}, **palettes}
-
-
-def _packed(palette: Colormap) -> str:
-    colours = palette(np.linspace(0.0, 1.0, COLOURS), bytes=True)[:, :3]
-    return base64.b64encode(np.ascontiguousarray(colours, dtype=np.uint8).tobytes()).decode()
+def _packed(colours: Colormap) -> str:
+    table = colours(np.linspace(0.0, 1.0, COLOURS), bytes=True)[:, :3]
+    return base64.b64encode(np.ascontiguousarray(table, dtype=np.uint8).tobytes()).decode()

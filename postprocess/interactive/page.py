@@ -1,0 +1,32 @@
+"""A page that a notebook shows in a frame."""
+
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+
+from mesh.safe_files import AnyPath, written_aside
+
+HEIGHT = 720
+"""Of the frame, in pixels."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Page:
+    """HTML that needs nothing else, and a short name of what it shows."""
+
+    html: str
+    name: str
+
+    def save(self, path: AnyPath) -> Path:
+        """Write the page to a file; return its path."""
+        path = Path(path)
+        with written_aside(path) as aside:
+            aside.write_text(self.html, encoding="utf-8")
+        return path
+
+    def __repr__(self) -> str:
+        return f"<Page of {self.name}, {len(self.html) / 1e6:.1f} MB; a notebook shows it, and save(path) writes it>"
+
+    def _repr_html_(self) -> str:
+        source = escape(self.html, quote=True)
+        return f'<iframe srcdoc="{source}" style="width: 100%; height: {HEIGHT}px; border: 0"></iframe>'
