@@ -7,11 +7,11 @@ where the coast enters it next, which may be where the ring began.
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.geometry.vectors import Vector, cross_product, dot_product, vector_between, vector_to
-
-TURN = 2.0 * np.pi
+from mesh.coast.crossings import neighbour_across
+from mesh.geometry.vectors import cross_product, dot_product, vector_to
 
 
 @numba.njit(cache=True)
@@ -35,27 +35,22 @@ def list_portions(
 
 
 @numba.njit(cache=True)
-def _angle(center: Vector, east: Vector, north: Vector, places: Array, place: int) -> float:
-    """Direction of a place as seen from the centre of a cell, counter-clockwise, in radians."""
-    way = (places[place, 0] - center[0], places[place, 1] - center[1], places[place, 2] - center[2])
-    return np.arctan2(dot_product(way, north), dot_product(way, east))
+def _side(triangles: Index, corners: Index, cell: int, other: int) -> int:
+    """Which side of a cell it shares with another one, -1 where none: side k leads from corner k to the next."""
+    for slot in range(len(corners)):
+        if neighbour_across(triangles, corners[slot], cell) == other:
+            return slot
+    return -1
 
 
 @numba.njit(cache=True)
-def _after(angle: float, start: float) -> float:
-    """How far counter-clockwise an angle lies from the start, in [0, 2 pi)."""
-    turn = angle - start
-    return turn + TURN if turn < 0.0 else turn
+def _along(points: Array, cell: int, other: int, places: Array, place: int) -> float:
+    """How far along the side of a cell with another one a place lies, counter-clockwise round the cell.
 
-
-@numba.njit(cache=True)
-def _frame(points: Array, cell: int, places: Array, place: int) -> tuple[Vector, Vector, Vector]:
-    """Centre of a cell, and two directions at right angles, of which the first leads towards a place."""
-    center = vector_to(points, cell)
-    way = vector_between(points, cell, places, place)
-    radial = dot_product(way, center)
-    east = (way[0] - radial * center[0], way[1] - radial * center[1], way[2] - radial * center[2])
-    return center, east, cross_product(center, east)
+    Seen from the other cell it is the same number with the opposite sign, to the last bit: both find the same order.
+    """
+    onward = cross_product(vector_to(points, cell), vector_to(points, other))
+    return dot_product(onward, vector_to(places, place))
 
 
 @numba.njit(cache=True)
@@ -85,20 +80,42 @@ def _write_coast(
 
 
 @numba.njit(cache=True)
-def _write_sides(corners: Index, angles: Array, start: float, turn: float, ring: Index, count: int) -> int:
-    """Write the corners of a cell that follow within `turn` after the angle `start`; give the new count."""
-    nearest, nearest_turn = 0, TURN
-    for slot in range(len(corners)):
-        after = _after(angles[slot], start)
-        if after < nearest_turn:
-            nearest, nearest_turn = slot, after
-    for step in range(len(corners)):
-        slot = (nearest + step) % len(corners)
-        if _after(angles[slot], start) >= turn:
-            break
-        ring[count] = corners[slot]
-        count += 1
-    return count
+def _next_entry(
+    points: Array,
+    triangles: Index,
+    corners: Index,
+    cell: int,
+    places: Array,
+    after_coast: int,
+    cells: Index,
+    leaving: int,
+    first_portion: Index,
+    next_portion: Index,
+    visited: NDArray[np.bool_],
+    begun: int,
+) -> tuple[int, int, int]:
+    """Where the coast enters a cell next, counter-clockwise from the crossing `leaving` on: portion, corner, corners.
+
+    `begun` is the portion with which the ring began, and where it closes. On the way are as many corners of the cell as
+    told, from the one told on. Which they are follows from the sides that the coast crosses; only along one side do
+    positions decide. So it makes no difference where the coast passes through a corner, or corners coincide.
+    """
+    size, beyond = len(corners), cells[leaving, 1]
+    side = _side(triangles, corners, cell, beyond)
+    here = _along(points, cell, beyond, places, after_coast + leaving)
+    entering, fewest, lowest = begun, size + 1, np.inf
+    portion = first_portion[cell]
+    while portion >= 0:
+        if portion < len(cells) and (portion == begun or not visited[portion]):
+            before = cells[portion, 0]
+            at = _along(points, cell, before, places, after_coast + portion)
+            passed = (_side(triangles, corners, cell, before) - side) % size
+            if passed == 0 and at < here:
+                passed = size
+            if passed < fewest or (passed == fewest and at < lowest):
+                entering, fewest, lowest = portion, passed, at
+        portion = next_portion[portion]
+    return entering, (side + 1) % size, fewest
 
 
 @numba.njit(cache=True)
@@ -106,12 +123,14 @@ def fill_clipped_rings(
     points: Array,
     ring_starts: Index,
     rings: Index,
+    triangles: Index,
     places: Array,
     n_triangles: int,
     coast_starts: Index,
     ring_of_arc: Index,
     crossing_starts: Index,
     arcs: Index,
+    cells: Index,
     first_portion: Index,
     next_portion: Index,
     clipped_starts: Index,
@@ -133,18 +152,11 @@ def fill_clipped_rings(
         corners = rings[ring_starts[cell] : ring_starts[cell + 1]]
         portion = first_portion[cell]
         loops[cell] = 0
-        angles = np.empty(0)
-        center, east, north = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         if portion < 0 or portion >= n_crossings:
             loops[cell] = 1
             for slot in range(len(corners)):
                 clipped[count] = corners[slot]
                 count += 1
-        else:
-            center, east, north = _frame(points, cell, places, after_coast + portion)
-            angles = np.empty(len(corners))
-            for slot in range(len(corners)):
-                angles[slot] = _angle(center, east, north, places, corners[slot])
         while portion >= 0:
             if not visited[portion]:
                 loops[cell] += 1
@@ -165,16 +177,23 @@ def fill_clipped_rings(
                     count = _write_coast(
                         going, leaving, arcs, coast[0], coast[1], n_triangles, after_coast, clipped, count
                     )
-                    start = _angle(center, east, north, places, after_coast + leaving)
-                    turn = TURN
-                    other = first_portion[cell]
-                    while other >= 0:
-                        if other < n_crossings and (other == portion or not visited[other]):
-                            after = _after(_angle(center, east, north, places, after_coast + other), start)
-                            if after < turn:
-                                going, turn = other, after
-                        other = next_portion[other]
-                    count = _write_sides(corners, angles, start, turn, clipped, count)
+                    going, corner, passed = _next_entry(
+                        points,
+                        triangles,
+                        corners,
+                        cell,
+                        places,
+                        after_coast,
+                        cells,
+                        leaving,
+                        first_portion,
+                        next_portion,
+                        visited,
+                        portion,
+                    )
+                    for step in range(passed):
+                        clipped[count] = corners[(corner + step) % len(corners)]
+                        count += 1
                 if loops[cell] > 1:
                     clipped[count] = clipped[loop_begin]
                     count += 1

@@ -11,6 +11,12 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.geometry.vectors import dot_product, vector_between, vector_to
 
+NO_ROOM, NOT_CLOSED = -1, -2
+"""What `follow_coast` gives in the place of a number of crossings."""
+
+MOST_ROUNDS = 4
+"""Times that a ring is followed: once where it begins inside a cell, twice where it begins between two."""
+
 
 @numba.njit(cache=True)
 def neighbour_across(triangles: Index, triangle: int, cell: int) -> int:
@@ -40,6 +46,55 @@ def nearest_cell(
 
 
 @numba.njit(cache=True)
+def _follow_ring(
+    points: Array,
+    triangles: Index,
+    ring_starts: Index,
+    rings: Index,
+    coast: Array,
+    first: int,
+    last: int,
+    cell: int,
+    count: int,
+    crossings: Array,
+    arcs: Index,
+    cells: Index,
+) -> tuple[int, int]:
+    """Write the crossings of the ring of points `first` to `last` - 1, which starts in `cell`, from row `count` on.
+
+    Gives how many there are then, `NO_ROOM` without room for all, and the cell in which the ring ends.
+    """
+    for arc in range(first, last):
+        end = arc + 1 if arc + 1 < last else first
+        step = vector_between(coast, arc, coast, end)
+        start = vector_to(coast, arc)
+        passed = 0.0
+        while True:
+            nearest, entered = 1.0, -1
+            for slot in range(ring_starts[cell], ring_starts[cell + 1]):
+                other = neighbour_across(triangles, rings[slot], cell)
+                away = vector_between(points, cell, points, other)
+                slope = dot_product(step, away)
+                if slope > 0.0:
+                    at = max(-dot_product(start, away) / slope, passed)
+                    if at < nearest:
+                        nearest, entered = at, other
+            if entered < 0:
+                break
+            if count == len(arcs):
+                return NO_ROOM, cell
+            x = start[0] + nearest * step[0]
+            y = start[1] + nearest * step[1]
+            z = start[2] + nearest * step[2]
+            factor = 1.0 / np.sqrt(x * x + y * y + z * z)
+            crossings[count, 0], crossings[count, 1], crossings[count, 2] = factor * x, factor * y, factor * z
+            arcs[count], cells[count, 0], cells[count, 1] = arc, cell, entered
+            count += 1
+            passed, cell = nearest, entered
+    return count, cell
+
+
+@numba.njit(cache=True)
 def follow_coast(
     points: Array,
     triangles: Index,
@@ -53,44 +108,31 @@ def follow_coast(
     arcs: Index,
     cells: Index,
 ) -> int:
-    """Write the crossings of all rings of the coast, in their order; give how many there are, -1 without room for all.
+    """Write the crossings of all rings of the coast, in their order; give how many there are, or what is wrong.
 
     Ring r has the crossings `crossing_starts[r]` to `crossing_starts[r + 1] - 1`: points in `crossings` (room, 3), the
     arc of the coast in `arcs` (room,) and the cells that the coast leaves and enters there in `cells` (room, 2).
-    `hints` (n_rings,) gives a cell near the start of each ring, and gets the one that contains it.
+    `hints` (n_rings,) gives a cell near the start of each ring, and gets the one that contains it. Gives `NO_ROOM`
+    without room for all, and `NOT_CLOSED` where a ring, followed again and again, ends in another cell than it began.
     """
     count = 0
     crossing_starts[0] = 0
     for ring in range(len(coast_starts) - 1):
         first, last = coast_starts[ring], coast_starts[ring + 1]
-        cell = nearest_cell(vector_to(coast, first), points, triangles, ring_starts, rings, hints[ring])
-        hints[ring] = cell
-        for arc in range(first, last):
-            end = arc + 1 if arc + 1 < last else first
-            step = vector_between(coast, arc, coast, end)
-            start = vector_to(coast, arc)
-            passed = 0.0
-            while True:
-                nearest, entered = 1.0, -1
-                for slot in range(ring_starts[cell], ring_starts[cell + 1]):
-                    other = neighbour_across(triangles, rings[slot], cell)
-                    away = vector_between(points, cell, points, other)
-                    slope = dot_product(step, away)
-                    if slope > 0.0:
-                        at = max(-dot_product(start, away) / slope, passed)
-                        if at < nearest:
-                            nearest, entered = at, other
-                if entered < 0:
-                    break
-                if count == len(arcs):
-                    return -1
-                x = start[0] + nearest * step[0]
-                y = start[1] + nearest * step[1]
-                z = start[2] + nearest * step[2]
-                factor = 1.0 / np.sqrt(x * x + y * y + z * z)
-                crossings[count, 0], crossings[count, 1], crossings[count, 2] = factor * x, factor * y, factor * z
-                arcs[count], cells[count, 0], cells[count, 1] = arc, cell, entered
-                count += 1
-                passed, cell = nearest, entered
+        arrived = nearest_cell(vector_to(coast, first), points, triangles, ring_starts, rings, hints[ring])
+        begun, begin, rounds = -1, count, 0
+        # Where a ring begins on the side between two cells, both contain its first point: the one in which it arrives
+        # there is the one to begin in, so that what it crosses there is crossed once.
+        while arrived != begun:
+            if rounds == MOST_ROUNDS:
+                return NOT_CLOSED
+            begun = arrived
+            count, arrived = _follow_ring(
+                points, triangles, ring_starts, rings, coast, first, last, begun, begin, crossings, arcs, cells
+            )
+            if count < 0:
+                return count
+            rounds += 1
+        hints[ring] = begun
         crossing_starts[ring + 1] = count
     return count

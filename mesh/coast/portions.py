@@ -7,6 +7,8 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.coast.sea_cells import SeaCells
+from mesh.errors import MeshError
+from mesh.geometry.sphere import to_lonlat
 from mesh.geometry.vectors import area_parts, dot_product, vector_between, vector_to
 
 
@@ -26,9 +28,12 @@ class Portions:
 
 
 def portions_of(sea: SeaCells, generators: Array) -> Portions:
-    """The portions of the coast of cells that each touch it, for the `generators` (n_cells, 3) of the `sea`."""
+    """The portions of the coast of cells that each touch it, for the `generators` (n_cells, 3) of the `sea`.
+
+    Raises `MeshError` where the coast is not followed from each cell into the next.
+    """
     n = sea.n_crossings
-    portions = Portions(np.empty((n, 3)), np.empty((n, 2)), np.full(n, -1, np.int32), np.empty(n))
+    portions = Portions(np.zeros((n, 3)), np.zeros((n, 2)), np.full(n, -1, np.int32), np.zeros(n))
     _measure(
         generators,
         sea.ring_starts,
@@ -42,7 +47,22 @@ def portions_of(sea: SeaCells, generators: Array) -> Portions:
         portions.next_crossing,
         portions.lengths,
     )
+    _require_each_ends_once(portions, sea)
     return portions
+
+
+def _require_each_ends_once(portions: Portions, sea: SeaCells) -> None:
+    """Raise `MeshError` unless each crossing ends one portion, in the cell that the coast leaves there."""
+    ends, known = portions.next_crossing, portions.next_crossing >= 0
+    arrivals = np.bincount(ends[known], minlength=sea.n_crossings)
+    wrong = ~known | (arrivals != 1) | (sea.crossing_cells[ends, 0] != sea.crossing_cells[:, 1])
+    if wrong.any():
+        first = int(np.argmax(wrong))
+        longitude, latitude = np.degrees(to_lonlat(sea.circumcenters[sea.n_triangles + sea.n_coast + first]))
+        raise MeshError(
+            f"the coast enters cell {sea.crossing_cells[first, 1]} at {longitude:.4g}, {latitude:.4g} degrees and does "
+            "not leave it once; ask for another number of cells, or for a smoother coast"
+        )
 
 
 @numba.njit(cache=True)

@@ -7,7 +7,8 @@ import numpy as np
 from mesh.arrays import Array, Index
 from mesh.coast.clipped_rings import fill_clipped_rings, list_portions
 from mesh.coast.coastline import Coastline
-from mesh.coast.crossings import follow_coast
+from mesh.coast.crossings import NO_ROOM, NOT_CLOSED, follow_coast
+from mesh.errors import MeshError
 from mesh.generation.optimizer import ScvtResult
 from mesh.triangulation.moving import Triangulation
 
@@ -26,7 +27,10 @@ class SeaCells:
     """
 
     def __init__(self, points: Array, coastline: Coastline, fillers: Array) -> None:
-        """Clip the cells of unit vectors `points` (n, 3); raise `MeshError` where they cannot be triangulated."""
+        """Clip the cells of unit vectors `points` (n, 3); raise `MeshError` where they cannot be triangulated.
+
+        So does it, and `update`, where rounding hides in which cell a ring of the coast begins.
+        """
         self._coastline, self._fillers = coastline, fillers
         self._all_points = np.concatenate([points, fillers])
         self._triangulation = Triangulation(self._all_points)
@@ -87,7 +91,12 @@ class SeaCells:
         while True:
             starts, arcs = self._crossing_starts, self._arcs
             self.n_crossings = follow_coast(*cells, *coast, self._hints, starts, self._crossings, arcs, self._cells)
-            if self.n_crossings >= 0:
+            if self.n_crossings == NOT_CLOSED:
+                raise MeshError(
+                    "a ring of the coast ends in another cell than it begins in, however often it is followed; "
+                    "begin it at another of its points, or move the generators a little"
+                )
+            if self.n_crossings != NO_ROOM:
                 break
             self._make_room(2 * len(self._crossings))
         self.circumcenters = np.concatenate([whole.circumcenters, coast[0], self._crossings[: self.n_crossings]])
@@ -97,12 +106,14 @@ class SeaCells:
             self._all_points,
             whole.ring_starts,
             whole.rings,
+            whole.triangles,
             self.circumcenters,
             self.n_triangles,
             coastline.ring_starts,
             self._ring_of_arc,
             self._crossing_starts,
             self._arcs,
+            self.crossing_cells,
             *portions,
             self.ring_starts,
             self.rings,

@@ -15,6 +15,9 @@ from mesh.geometry.sphere import arc_length, normalize, triangle_area
 from mesh.validated import remember_validated
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Topology, VoronoiMesh
 
+ROUND_OFF = 1e-12
+"""Generators nearer to the coast than this, in radians, would be on it but for rounding."""
+
 
 def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of the clipped cells of `generators` (n_cells, 3), where `sea` has them.
@@ -22,7 +25,8 @@ def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> Vo
     A cell's portion of the coast is one edge without a second cell. Its point is that of the coast which is nearest to
     the generator, its `dc_edge` twice the distance to there, as if another generator stood as far behind the coast, and
     its `dv_edge` the arc between its ends. Areas of cells are those of the clipped cells, with all bends of the coast.
-    Raises `MeshError` where a generator stands on land, or where cells and coast are too intricate for such a mesh.
+    Raises `MeshError` where a generator stands on land or on the coast itself, or where cells and coast are too
+    intricate for such a mesh.
     """
     on_land = np.flatnonzero(~sea.coastline.contains(generators))
     if len(on_land):
@@ -44,15 +48,22 @@ def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> Vo
 
 
 def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Index) -> AtWalls:
-    """What the coast adds to the metrics: its vertices, the points of its edges, and kites beside them."""
+    """What the coast adds to the metrics: its vertices, the points of its edges, and kites beside them.
+
+    Raises `MeshError` where a generator stands on the coast itself.
+    """
     vertices = sea.circumcenters[places]
     portion = places - sea.n_triangles - sea.n_coast
     walls = np.flatnonzero(topology.cells_on_edge[:, 1] < 0)
     of_wall = portion[topology.vertices_on_edge[walls, 0]]
     edges = np.zeros((topology.n_edges, 3))
     edges[walls] = portions.points[of_wall]
+    cells = topology.cells_on_edge[walls, 0]
     dc_edge = np.zeros(topology.n_edges)
-    dc_edge[walls] = 2.0 * arc_length(generators[topology.cells_on_edge[walls, 0]], edges[walls])
+    dc_edge[walls] = 2.0 * arc_length(generators[cells], edges[walls])
+    ashore = cells[dc_edge[walls] < ROUND_OFF]
+    if len(ashore):
+        raise MeshError(f"generator {ashore[0]} stands on the coast itself: ask for another number of cells")
     return AtWalls(vertices, edges, dc_edge, _kites(generators, topology, vertices, portion, portions))
 
 
@@ -64,7 +75,7 @@ def _kites(generators: Array, topology: Topology, vertices: Array, portion: Inde
     """
     kites = np.zeros((topology.n_vertices, 3))
     rows = np.flatnonzero(portion >= 0)
-    arriving = np.empty(len(portions.areas), np.int64)
+    arriving = np.full(len(portions.areas), -1)  # all are filled: `portions_of` has seen to it
     arriving[portions.next_crossing] = np.arange(len(portions.areas))
     entered, left = (generators[topology.cells_on_vertex[rows, k]] for k in range(2))
     corner, middle = vertices[rows], normalize(entered + left)

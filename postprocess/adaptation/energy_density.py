@@ -27,13 +27,14 @@ def time_mean(run: Run, field: str, first: float | None = None, last: float | No
     """The mean of a field over the snapshots of the second half of a run, or from day `first` to day `last` of it."""
     last = run.days[-1] if last is None else last
     first = last - AVERAGED_SHARE * (last - run.days[0]) if first is None else first
-    days = [day for day in run.days if first - DAY_TOLERANCE <= day <= last + DAY_TOLERANCE]
-    if not days:
+    rows = np.flatnonzero((first - DAY_TOLERANCE <= run.days) & (run.days <= last + DAY_TOLERANCE))
+    if not len(rows):
         raise InputError(f"{run.directory} has no snapshot from day {first:g} to day {last:g}; run it again")
-    total = np.zeros_like(run.snapshot(days[0]).fields[field])
-    for day in days:
-        total += run.snapshot(day).fields[field]
-    return total / len(days)
+    snapshots = (run.field(field, int(row)) for row in rows)
+    total = 0.0 + next(snapshots)
+    for values in snapshots:
+        total += values
+    return total / len(rows)
 
 
 def smoothed(mesh: VoronoiMesh, values: Array, passes: int) -> Array:

@@ -1,6 +1,6 @@
 """Read a run directory."""
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -144,10 +144,14 @@ class Run:
         """The last snapshot in the history file."""
         return self._read(len(self.days) - 1)
 
-    def _read(self, row: int) -> Snapshot:
+    def field(self, name: str, row: int) -> Array:
+        """The field `name` in a row of `days`, read and checked alone; raises `InputError` if it is not there."""
+        return self._read(row, (name,)).fields[name]
+
+    def _read(self, row: int, names: Collection[str] = FIELDS) -> Snapshot:
         with dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
-            present = {name: np.asarray(file[name][row]) for name in FIELDS if name in file.variables}
+            present = {name: np.asarray(file[name][row]) for name in names if name in file.variables}
         snapshot = Snapshot(float(self.days[row]), _Fields(self.directory, present))
         wrong = [name for name, values in present.items() if not np.isfinite(values).all()]
         if wrong or ("thickness" in present and not present["thickness"].min(initial=np.inf) > 0.0):

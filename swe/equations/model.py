@@ -13,7 +13,7 @@ from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations import kernels
 from swe.equations.measures import measures_of
 from swe.equations.schemes import Ringler2010, Scheme
-from swe.equations.terms import Term
+from swe.equations.terms import Forcing, Term
 from swe.errors import InputError
 from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
@@ -107,7 +107,7 @@ class ShallowWaterModel:
         self.gravity = gravity
         self.prescribed_wind = prescribed_wind
         self.scheme = scheme(mesh)
-        self.terms = tuple(terms)
+        self.terms = tuple(term.at_walls(wall_slip) for term in terms)
         self.processes = processes
         self.wall_slip = wall_slip
         self.closed = closed_mesh(mesh)
@@ -124,6 +124,11 @@ class ShallowWaterModel:
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
+
+    @property
+    def forcings(self) -> tuple[Forcing, ...]:
+        """Terms that a case has declared."""
+        return tuple(term for term in self.terms if isinstance(term, Forcing))
 
     @property
     def terms_in_stages(self) -> tuple[Term, ...]:

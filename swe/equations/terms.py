@@ -47,6 +47,10 @@ class Term:
     after_steps = False
     rings = 2
 
+    def at_walls(self, wall_slip: float) -> "Term":
+        """The term in a model with `wall_slip`, from 0 (no slip) to 1 (free slip); by default the same for all."""
+        return self
+
     def change_vorticity(self, state: State, potential_vorticity: Array, at_edges: Array) -> None:
         """Change the potential vorticity at edges (n_edges,) that the Coriolis flux carries, in place.
 
@@ -104,6 +108,10 @@ class Forcing(Term):
         of_source, of_acceleration = set(INTEGRALS) - {"absolute_vorticity"}, set(INTEGRALS) - {"mass"}
         changed = (of_source if source else set()) | (of_acceleration if acceleration else set())
         self.changes = tuple(integral for integral in INTEGRALS if integral in changed)
+
+    def at_walls(self, wall_slip: float) -> "Forcing":
+        """See `Term`."""
+        return self
 
     def stable_step(self, mesh: VoronoiMesh) -> float:
         """Longest time step, s, that the term itself stands on `mesh`, in metres; without bound by default."""

@@ -65,7 +65,7 @@ def default_time_step(start: CaseFields, options: Options, processes: Processes 
     if not np.isfinite(per_second):
         raise InputError(f"the wave speed of {case.name} is not finite; correct its parameters")
     courant = STEPPINGS[options.integrator].default_courant_number
-    per_term = (1.0 / term.stable_step(start.mesh) for term in start.forcings)
+    per_term = (1.0 / term.at_walls(options.wall_slip).stable_step(start.mesh) for term in start.forcings)
     (of_terms,) = processes.largest(np.array([max(per_term, default=0.0)]))
     limits = [courant / per_second] if per_second > 0.0 else []
     limits += [1.0 / float(of_terms)] if of_terms > 0.0 else []
@@ -151,7 +151,7 @@ def warnings_before(
     """What is likely to go wrong during a run, in sentences."""
     time_step = configuration.time_step
     waves = time_step * STEPPINGS[configuration.integrator].stable_courant_number / max(initial_courant_number, 1e-300)
-    limits = {term.name: term.stable_step(start.mesh) for term in start.forcings}
+    limits = {term.name: term.stable_step(start.mesh) for term in model.forcings}
     limits |= {term.name: term.largest_time_step for term in model.terms if isinstance(term, BiharmonicDissipation)}
     term = min(limits, key=lambda name: limits[name], default="")
     damping = limits.get(term, float("inf"))

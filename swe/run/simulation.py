@@ -284,10 +284,10 @@ class Simulation:
             self.case.parameters(),
             self.configuration,
             self.model,
-            start_hash(self.model, self.state, self._start.forcings),
+            start_hash(self.model, self.state, self.model.forcings),
             self.initial_invariants,
             fields,
-            tuple(term.name for term in self._start.forcings),
+            tuple(term.name for term in self.model.forcings),
             self.loops,
         )
 

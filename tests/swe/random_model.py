@@ -14,13 +14,14 @@ RADIUS = 6.4e6
 
 
 def random_model(
-    mesh: VoronoiMesh, *terms: Term, seed: int, scheme: type[Scheme] = Ringler2010
+    mesh: VoronoiMesh, *terms: Term, seed: int, scheme: type[Scheme] = Ringler2010, wall_slip: float = 0.0
 ) -> tuple[ShallowWaterModel, State]:
     """A model on `mesh` in metres, and a state at rest at walls."""
     random = np.random.default_rng(seed)
     topography = random.uniform(0.0, 500.0, mesh.n_cells)
     coriolis = random.uniform(-1e-4, 1e-4, mesh.n_vertices)
-    model = ShallowWaterModel(mesh.scaled(RADIUS), topography, coriolis, 9.8, scheme=scheme, terms=terms)
+    fields = mesh.scaled(RADIUS), topography, coriolis, 9.8
+    model = ShallowWaterModel(*fields, scheme=scheme, terms=terms, wall_slip=wall_slip)
     state = State(random.uniform(900.0, 1100.0, mesh.n_cells), random.uniform(-30.0, 30.0, mesh.n_edges))
     state.normal_velocity[wall_edges(mesh)] = 0.0
     return model, state

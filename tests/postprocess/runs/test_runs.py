@@ -4,6 +4,8 @@ import json
 import shutil
 from pathlib import Path
 
+import netCDF4
+import numpy as np
 import pytest
 
 from cases import Williamson2
@@ -49,6 +51,22 @@ def test_mesh_that_is_none_is_told_as_such(directory: Path) -> None:
     (directory / "mesh.nc").write_text("nothing")
     with pytest.raises(MeshError, match=r"mesh\.nc: not a readable NetCDF file"):
         read_run(directory)
+
+
+def test_a_field_is_read_and_checked_alone(directory: Path) -> None:
+    run = read_run(directory)
+    with netCDF4.Dataset(directory / "history.nc", "a") as file:
+        np.testing.assert_array_equal(run.field("thickness", 1), file["thickness"][1])
+        file["kinetic_energy"][1, 7] = np.nan
+    assert run.field("thickness", 1).shape == (42,)
+    with pytest.raises(InputError, match=r"history\.nc has non-finite kinetic_energy on day"):
+        run.field("kinetic_energy", 1)
+    with netCDF4.Dataset(directory / "history.nc", "a") as file:
+        file["thickness"][1, 7] = 0.0
+    with pytest.raises(InputError, match=r"history\.nc has non-positive thickness on day"):
+        run.field("thickness", 1)
+    with pytest.raises(InputError, match=r"history\.nc holds no vorticity"):
+        run.field("vorticity", 1)
 
 
 @pytest.mark.parametrize(

@@ -86,9 +86,12 @@ def test_accelerations_are_those_of_the_equations(part: VoronoiMesh) -> None:
 
 
 @pytest.mark.parametrize("slip", [0.0, 0.4, 1.0])
-def test_viscosity_takes_the_slip_along_walls(part: VoronoiMesh, slip: float) -> None:
-    term = Viscosity(1e6, wall_slip=slip)
-    model, state = random_model(part, term, seed=4)
+def test_viscosity_takes_the_slip_of_the_model(part: VoronoiMesh, slip: float) -> None:
+    """One term serves models with different slips."""
+    shared = Viscosity(1e6)
+    model, state = random_model(part, shared, seed=4, wall_slip=slip)
+    random_model(part, shared, seed=4, wall_slip=0.7)
+    (term,) = model.forcings
     mesh, u = model.mesh, state.normal_velocity
     operators = build_operators(mesh, slip)
     tail, head = mesh.vertices_on_edge.T
@@ -97,6 +100,16 @@ def test_viscosity_takes_the_slip_along_walls(part: VoronoiMesh, slip: float) ->
     expected[wall_edges(mesh)] = 0.0
     added = model.tendency_of(term, state).normal_velocity
     np.testing.assert_allclose(added, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_the_slip_of_a_run_is_that_of_its_viscosity(icosahedral_mesh: VoronoiMesh) -> None:
+    """Also in the hash of the start, which tells a run that goes on from another one."""
+    cut = without_cap(icosahedral_mesh)
+    runs = [Simulation(cut, Viscous(viscosity=1e9), wall_slip=slip) for slip in (0.0, 1.0)]
+    added = [run.model.tendency_of(run.model.forcings[0], run.state).normal_velocity for run in runs]
+    assert np.abs(added[0] - added[1]).max() > 0.01 * np.abs(added[0]).max()
+    hashes = [run._described(()).start_hash for run in runs]
+    assert hashes[0] != hashes[1]
 
 
 def test_budgets_are_the_work_of_each_term(part: VoronoiMesh) -> None:
@@ -205,7 +218,6 @@ def test_a_term_may_serve_two_meshes(small_mesh: VoronoiMesh, icosahedral_mesh: 
         (lambda: LinearDrag(-1.0), "the rate of the drag is -1; it must be zero or positive"),
         (lambda: QuadraticDrag(float("nan")), "the drag coefficient is nan; it must be zero or positive"),
         (lambda: Viscosity("much"), "the viscosity is 'much'"),
-        (lambda: Viscosity(1.0, wall_slip=1.5), "the slip along walls is 1.5; it must be a number from 0 to 1"),
         (lambda: ThicknessRelaxation(1000.0, 0.0), "the time scale of the relaxation is 0; it must be positive"),
         (lambda: ThicknessRelaxation(float("inf"), 1.0), "the thickness to relax to is inf; give a finite number, or"),
         (lambda: WindStress(0.1, density=-5.0), "the density is -5; it must be positive"),
