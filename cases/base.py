@@ -27,7 +27,7 @@ SMALLEST, LARGEST = 1e-6, 1e12
 RADIUS_TOLERANCE = 1e-9
 """Largest relative difference between the radii of mesh and case; files round the radius."""
 
-MOST_TOLD = 8
+MOST_TOLD = 9
 """Parameters of its own that a case shows; what has more tells how many."""
 
 LARGEST_ANGLE = 4.0 * math.pi
@@ -44,7 +44,7 @@ def parameter(default: Default, units: str, meaning: str) -> Default:
     return cast(Default, field(default=default, metadata={"units": units, "meaning": meaning}))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Case(Shown, ABC):
     """A shallow-water test case on a rotating sphere; longitudes and latitudes in radians.
 
@@ -87,10 +87,10 @@ class Case(Shown, ABC):
     def _title_and_rows(self) -> tuple[str, Rows]:
         """Name, title and parameters with their units; those that all cases have share a line."""
         days = getattr(self, "recommended_days", None)
+        paper = [in_words(self.reference.partition(", https://")[0])] if self.reference else []
         rows = {
             "title": in_words(getattr(self, "title", "none")),
-            "reference": in_words(self.reference),
-            "days": "" if days is None else f"{in_words(days)} recommended",
+            "reference": ", ".join(paper + ([] if days is None else [f"{in_words(days)} days"])),
         }
         common, own = fields(Case), fields(self)[len(fields(Case)) :]
         rows["sphere"] = ", ".join(f"{each.name.replace('_', ' ')} {_value_in_words(self, each)}" for each in common)

@@ -131,7 +131,7 @@ class VoronoiMesh(Shown, Metrics, Topology):
     def _title_and_rows(self) -> tuple[str, Rows]:
         rows = {
             "edges, vertices": f"{self.n_edges}, {self.n_vertices}",
-            "sphere": sphere_in_words(self.sphere_radius),
+            "radius": "" if self.sphere_radius == 1.0 else in_kilometres(self.sphere_radius),
             "density": in_words(self.density_name),
             "spacing": _spacing_in_words(self),
             "sigma": _sigma_in_words(self),
@@ -221,8 +221,8 @@ def _sigma_in_words(mesh: VoronoiMesh) -> str:
         inside = place < mesh.n_edges_on_cell
         lengths = np.where(inside, chords[np.where(inside, mesh.edges_on_cell[:, place], 0)], np.nan)
         shortest, longest = np.fmin(shortest, lengths), np.fmax(longest, lengths)
-    sigma = shortest / longest
-    sigma = sigma[np.isfinite(sigma)]
+    known = longest > 0.0
+    sigma = shortest[known] / longest[known]
     if not sigma.size:
         return ""
     return f"mean {sigma.mean():.4f}, least {sigma.min():.4f} (shortest over longest distance to a neighbour)"

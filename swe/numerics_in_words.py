@@ -10,7 +10,7 @@ UNITS = {"dissipation": "m4/s"}
 
 
 def numerics_in_words(configuration: Mapping[str, Any], forcings: Iterable[str]) -> Rows:
-    """Scheme, integrator, and the terms and slip that a configuration, as in `run.json`, has beyond the defaults.
+    """Scheme and integrator, and the options that a configuration, as in `run.json`, has beyond the defaults.
 
     `forcings` are the names of the terms that the case adds.
     """
@@ -18,8 +18,10 @@ def numerics_in_words(configuration: Mapping[str, Any], forcings: Iterable[str])
         "scheme": in_words(configuration.get("scheme", "ringler2010")),
         "integrator": in_words(configuration.get("integrator", "rk4")),
     }
-    for name in ("anticipation", "upwinding", "dissipation", "wall_slip"):
-        if configuration.get(name):
-            rows[name.replace("_", " ")] = in_words(configuration[name], UNITS.get(name, ""))
-    names = ", ".join(map(str, forcings))
-    return rows | ({"terms of the case": in_words(names)} if names else {})
+    options = [
+        f"{name.replace('_', ' ')} {in_words(configuration[name], UNITS.get(name, ''))}"
+        for name in ("anticipation", "upwinding", "dissipation", "wall_slip")
+        if configuration.get(name)
+    ]
+    told = {"options": ", ".join(options), "terms of the case": in_words(", ".join(map(str, forcings)))}
+    return rows | {name: words for name, words in told.items() if words}
