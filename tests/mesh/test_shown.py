@@ -3,6 +3,7 @@
 import subprocess
 import sys
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -76,6 +77,8 @@ def test_a_mesh_shows_its_coast(icosahedral_mesh: VoronoiMesh) -> None:
     assert f"sigma: mean {quality.sigma_avg:.4f}, least {quality.sigma_min:.4f} (" in repr(sea)
     inside = sea.cells_on_edge.min(axis=1) >= 0
     assert f"largest {sea.dc_edge[inside].max():.4g} radians" in repr(sea)
+    beyond_walls = replace(sea, dc_edge=np.where(inside, sea.dc_edge, 1.0))
+    assert repr(beyond_walls) == repr(sea)
 
 
 def test_requests_regions_partitions_and_operators(small_mesh: VoronoiMesh) -> None:
