@@ -4,7 +4,7 @@ import math
 import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Callable
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import MISSING, Field, asdict, dataclass, field, fields
 from typing import Any, ClassVar, TypeVar, cast
 
 import numpy as np
@@ -14,6 +14,7 @@ from mesh.arrays import Array
 from mesh.discrete.operators import normal_velocity_from_streamfunction
 from mesh.integrals.quadrature import Sampling, SphereFunction, sample_cells
 from mesh.plain import plain, plain_number
+from mesh.shown import Rows, Shown, in_words
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import EARTH_RADIUS, GRAVITY, ROTATION_RATE
 from swe.equations.terms import Forcing
@@ -25,6 +26,9 @@ SMALLEST, LARGEST = 1e-6, 1e12
 
 RADIUS_TOLERANCE = 1e-9
 """Largest relative difference between the radii of mesh and case; files round the radius."""
+
+MOST_TOLD = 9
+"""Parameters of its own that a case shows; what has more tells how many."""
 
 LARGEST_ANGLE = 4.0 * math.pi
 """Two turns, radians: beyond, a number is likely to be in degrees."""
@@ -40,8 +44,8 @@ def parameter(default: Default, units: str, meaning: str) -> Default:
     return cast(Default, field(default=default, metadata={"units": units, "meaning": meaning}))
 
 
-@dataclass(frozen=True)
-class Case(ABC):
+@dataclass(frozen=True, repr=False)
+class Case(Shown, ABC):
     """A shallow-water test case on a rotating sphere; longitudes and latitudes in radians.
 
     A case must define `thickness`, `streamfunction`, `title` and `recommended_days`; everything else has a default.
@@ -80,15 +84,22 @@ class Case(ABC):
         # A dataclass writes a `__repr__` of its own where it finds none in the class itself.
         cls.__repr__ = cls.__repr__  # type: ignore[method-assign]
 
-    def __repr__(self) -> str:
-        """Name, title and those parameters that are not the default."""
-        name, title = getattr(self, "name", type(self).__name__), getattr(self, "title", "no title")
-        changed = ", ".join(
-            f"{each.name} = {getattr(self, each.name)!r}"
-            for each in fields(self)
-            if repr(getattr(self, each.name)) != repr(plain(each.default))
-        )
-        return f"<Case {name} ({title})" + (f": {changed}>" if changed else ">")
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        """Name, title and parameters with their units; those that all cases have share a line."""
+        days = getattr(self, "recommended_days", None)
+        paper = [in_words(self.reference.partition(", https://")[0])] if self.reference else []
+        rows = {
+            "title": in_words(getattr(self, "title", "none")),
+            "reference": ", ".join(paper + ([] if days is None else [f"{in_words(days)} days"])),
+        }
+        common, own = fields(Case), fields(self)[len(fields(Case)) :]
+        rows["sphere"] = ", ".join(f"{each.name.replace('_', ' ')} {_value_in_words(self, each)}" for each in common)
+        told = own if len(own) <= MOST_TOLD else own[: MOST_TOLD - 1]
+        rows |= {each.name.replace("_", " "): _value_in_words(self, each) for each in told}
+        if told != own:
+            rows["more parameters"] = f"{len(own) - len(told)}; see parameters()"
+        name = getattr(self, "name", type(self).__name__)
+        return f"Case {name}", {name: words for name, words in rows.items() if words}
 
     def __post_init__(self) -> None:
         for each in fields(self):
@@ -238,6 +249,13 @@ class Case(ABC):
                 f"shape {longitude.shape}; it must give one value for each position, or one number"
             )
         return np.array(np.broadcast_to(values, longitude.shape))
+
+
+def _value_in_words(case: Case, parameter: Field[Any]) -> str:
+    """The value of a parameter with its units, and the default where it is another."""
+    value, default, units = getattr(case, parameter.name), plain(parameter.default), parameter.metadata.get("units", "")
+    changed = default is not MISSING and repr(value) != repr(default)
+    return in_words(value, units) + (f" (default {in_words(default)})" if changed else "")
 
 
 def _place_of_call(error: BaseException) -> str:

@@ -5,7 +5,7 @@ This module imports no package when it runs, so that the command line can read t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -13,10 +13,11 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from mesh.arrays import Array
+    from mesh.shown import Rows
     from mesh.voronoi_mesh import VoronoiMesh
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class MeshRequest:
     """A mesh to be generated; `scvt_mesh` and `trisk mesh` take its fields by the same names.
 
@@ -66,3 +67,30 @@ class MeshRequest:
     density_floor: float = 0.0
     density_power: float = 1.0
     density_smoothing: int = 0
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        """Cells, density and method, and of all others those that are not the default."""
+        from mesh.shown import in_words
+        from mesh.voronoi_mesh import mesh_in_words
+
+        rows = {name: in_words(getattr(self, name)) for name in ("density", "method")}
+        for each in fields(self):
+            value = getattr(self, each.name)
+            if each.name not in ("cells", "nested") and repr(value) != repr(each.default):
+                rows[each.name.replace("_", " ")] = in_words(value)
+        if self.nested is not None:
+            rows["nested"] = f"in a mesh of {mesh_in_words(self.nested)}"
+        cells = "as many cells as the density asks for" if self.cells is None else f"{in_words(self.cells)} cells"
+        return f"MeshRequest for {cells}", rows
+
+    # `mesh.shown.Shown` is no base of this class, as the command line reads this module without its package.
+
+    def __repr__(self) -> str:
+        from mesh.shown import as_text
+
+        return as_text(*self._title_and_rows())
+
+    def _repr_html_(self) -> str:
+        from mesh.shown import as_html
+
+        return as_html(*self._title_and_rows())

@@ -1,4 +1,4 @@
-"""The Voronoi mesh as data: connectivity and metrics, no computation beyond views and rescaling.
+"""The Voronoi mesh as data: connectivity and metrics, no computation beyond views, rescaling and words about it.
 
 Names are those of the MPAS mesh specification in snake_case; `mesh.conventions` gives every array its
 dimensions, units and meaning. In memory, indices count from 0 and -1 fills what a short ring leaves over.
@@ -11,6 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
+from mesh.graphs import count_seas_and_coasts
+from mesh.shown import Rows, Shown, in_kilometres, in_words
 from mesh.validated import is_validated, remember_validated
 
 
@@ -112,7 +114,7 @@ class Metrics:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class VoronoiMesh(Metrics, Topology):
+class VoronoiMesh(Shown, Metrics, Topology):
     """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
 
     `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density.named`)
@@ -126,13 +128,18 @@ class VoronoiMesh(Metrics, Topology):
     density_source: str = ""
     fixed_cells: NDArray[np.bool_] | None = None
 
-    def __repr__(self) -> str:
-        sphere = "the unit sphere" if self.sphere_radius == 1.0 else f"a sphere of radius {self.sphere_radius:g} m"
-        density = f", density {self.density_name}" if self.density_name else ""
-        return (
-            f"<VoronoiMesh of {self.n_cells} cells, {self.n_edges} edges and {self.n_vertices} vertices on "
-            f"{sphere}{density}>"
-        )
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        rows = {
+            "edges, vertices": f"{self.n_edges}, {self.n_vertices}",
+            "radius": "" if self.sphere_radius == 1.0 else in_kilometres(self.sphere_radius),
+            "density": in_words(self.density_name),
+            "spacing": _spacing_in_words(self),
+            "sigma": _sigma_in_words(self),
+            "irregular cells": f"{np.count_nonzero(self.n_edges_on_cell != 6)} with more or fewer than six edges",
+            "coast": coast_in_words(self),
+            "held": "" if self.fixed_cells is None else f"{np.count_nonzero(self.fixed_cells)} generators",
+        }
+        return f"VoronoiMesh of {self.n_cells} cells", {name: words for name, words in rows.items() if words}
 
     @property
     def cell_points(self) -> Array:
@@ -158,6 +165,67 @@ class VoronoiMesh(Metrics, Topology):
         if is_validated(self):
             remember_validated(scaled)
         return scaled
+
+
+def mesh_in_words(mesh: VoronoiMesh) -> str:
+    """Cells, mean spacing and sphere, for a line about what stands on the mesh."""
+    spacing = _spacings(mesh)
+    mean = f", mean spacing {_length(mesh, spacing.mean())}" if spacing.size else ""
+    return f"{mesh.n_cells} cells on {sphere_in_words(mesh.sphere_radius)}{mean}"
+
+
+def sphere_in_words(radius: float) -> str:
+    """The unit sphere, or one with a radius in metres."""
+    return "the unit sphere" if radius == 1.0 else f"a sphere of radius {in_kilometres(radius)}"
+
+
+def coast_in_words(mesh: VoronoiMesh) -> str:
+    """How many seas and coasts the mesh has and what share of the sphere it covers; empty if it has no coast."""
+    if mesh.cells_on_edge.min(initial=0) >= 0:
+        return ""
+    at_boundary = mesh.cells_on_vertex.min(axis=1) < 0
+    seas, coasts = count_seas_and_coasts(mesh.n_cells, mesh.cells_on_edge, mesh.vertices_on_edge, at_boundary)
+    seas_in_words = "1 sea" if seas == 1 else f"{seas} seas"
+    coasts_in_words = "1 coast" if coasts == 1 else f"{coasts} coasts"
+    return f"{seas_in_words}, {coasts_in_words}; {share_of_sphere(mesh.area_cell, mesh.sphere_radius)}"
+
+
+def share_of_sphere(areas: Array, radius: float) -> str:
+    """What share of a sphere cells with these areas (n,) cover, in words."""
+    return f"the sea covers {100.0 * areas.sum() / (4.0 * np.pi * radius**2):.3g} % of the sphere"
+
+
+def _spacings(mesh: VoronoiMesh) -> Array:
+    """Distances between cells that are neighbours (n,), without those beyond walls, which are not there."""
+    return mesh.dc_edge[mesh.cells_on_edge.min(axis=1) >= 0]
+
+
+def _length(mesh: VoronoiMesh, length: float) -> str:
+    return f"{length:.4g} radians" if mesh.sphere_radius == 1.0 else in_kilometres(length)
+
+
+def _spacing_in_words(mesh: VoronoiMesh) -> str:
+    spacing = _spacings(mesh)
+    if not spacing.size:
+        return ""
+    mean, least, largest = (_length(mesh, each) for each in (spacing.mean(), spacing.min(), spacing.max()))
+    return f"mean {mean}, least {least}, largest {largest}"
+
+
+def _sigma_in_words(mesh: VoronoiMesh) -> str:
+    """Mean and least sigma, as `mesh.discrete.quality` has them, from the distances that the mesh holds."""
+    chords = np.sin(mesh.dc_edge / (2.0 * mesh.sphere_radius))
+    chords[mesh.cells_on_edge.min(axis=1) < 0] = np.nan
+    shortest, longest = np.full((2, mesh.n_cells), np.nan)
+    for place in range(mesh.max_edges):
+        inside = place < mesh.n_edges_on_cell
+        lengths = np.where(inside, chords[np.where(inside, mesh.edges_on_cell[:, place], 0)], np.nan)
+        shortest, longest = np.fmin(shortest, lengths), np.fmax(longest, lengths)
+    known = longest > 0.0
+    sigma = shortest[known] / longest[known]
+    if not sigma.size:
+        return ""
+    return f"mean {sigma.mean():.4f}, least {sigma.min():.4f} (shortest over longest distance to a neighbour)"
 
 
 TOPOLOGY_NAMES = tuple(field.name for field in fields(Topology))

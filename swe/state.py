@@ -5,10 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.shown import Rows, Shown, span
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class State:
+class State(Shown):
     """`thickness` at cells (n_cells,), m, and `normal_velocity` at edges (n_edges,), m/s.
 
     The normal velocity is positive from `cells_on_edge[e, 0]` to `[e, 1]`. A tendency takes the same form, in
@@ -18,12 +19,12 @@ class State:
     thickness: Array
     normal_velocity: Array
 
-    def __repr__(self) -> str:
+    def _title_and_rows(self) -> tuple[str, Rows]:
         h, u = self.thickness, self.normal_velocity
-        return (
-            f"<State of {h.size} cells and {u.size} edges: thickness {h.min():g} to {h.max():g} m, normal velocity up "
-            f"to {np.abs(u).max():g} m/s>"
-        )
+        return f"State of {h.size} cells and {u.size} edges", {
+            "thickness": span(h, "m"),
+            "normal velocity": span(u, "m/s"),
+        }
 
     def copy(self) -> "State":
         """An independent copy."""

@@ -14,10 +14,11 @@ from scipy.sparse import coo_array, csr_array
 from mesh.arrays import Array, Index
 from mesh.discrete.sides import Sides, sides_of_cells
 from mesh.discrete.walls import closed_mesh, shares_of_circulation
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.shown import Rows, Shown, in_words
+from mesh.voronoi_mesh import VoronoiMesh, coast_in_words, mesh_in_words
 
 
-class Operators:
+class Operators(Shown):
     """All operators of one mesh, each made when it is first asked for; apply them with `@`.
 
     They follow Ringler et al. (2010), by the numbers of their equations; across walls nothing flows and there is no
@@ -28,6 +29,18 @@ class Operators:
         self.mesh = closed_mesh(mesh)
         self._given = mesh
         self._wall_slip = wall_slip
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        names = [name for name, value in vars(type(self)).items() if isinstance(value, cached_property)]
+        made = [name for name in names if name in vars(self)]
+        rows = {
+            "mesh": mesh_in_words(self._given),
+            "coast": coast_in_words(self._given),
+            "wall slip": in_words(self._wall_slip) if self._wall_slip else "",
+            "made": ", ".join(made),
+            "made when asked for": ", ".join(name for name in names if name not in made),
+        }
+        return "Operators", {name: words for name, words in rows.items() if words}
 
     @cached_property
     def divergence(self) -> csr_array:

@@ -12,12 +12,13 @@ from mesh.discrete.walls import has_walls
 from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
 from mesh.integrals.moments import masses_and_moments
 from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
+from mesh.shown import Rows, Shown
 from mesh.triangulation.moving import Triangulation
 from mesh.voronoi_mesh import VoronoiMesh
 
 
-@dataclass(frozen=True)
-class Quality:
+@dataclass(frozen=True, repr=False)
+class Quality(Shown):
     """The measures of Ju, Ringler and Gunzburger (2011), section 4, and some more.
 
     `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
@@ -38,6 +39,16 @@ class Quality:
     residual: float
     obtuse: int
     area_ratio: float
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        return f"Quality of a mesh of {self.cells} cells", {
+            "mu": f"{self.mu:.4f}, largest over smallest distance between neighbours",
+            "sigma": f"mean {self.sigma_avg:.4f}, least {self.sigma_min:.4f}, shortest over longest distance of a cell",
+            "q": f"mean {self.q_avg:.4f}, least {self.q_min:.4f}, of triangles; 1 if equilateral",
+            "residual": f"{self.residual:.3g} mean spacings from a generator to its centroid, at most",
+            "obtuse": f"{self.obtuse} triangles",
+            "area_ratio": f"{self.area_ratio:.4f}, largest over smallest cell",
+        }
 
 
 def mesh_quality(mesh: VoronoiMesh, density: Density | None = None) -> Quality:

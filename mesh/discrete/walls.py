@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
-from mesh.graphs import connected_parts
+from mesh.graphs import count_seas_and_coasts
 from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 
@@ -34,11 +34,7 @@ def boundary_vertices(mesh: Topology) -> NDArray[np.bool_]:
 
 def seas_and_coasts(mesh: Topology) -> tuple[int, int]:
     """How many connected seas the cells of a mesh form, and how many closed coasts the walls do."""
-    is_wall = (mesh.cells_on_edge < 0).any(axis=1)
-    _, coast = connected_parts(mesh.n_vertices, mesh.vertices_on_edge[is_wall])
-    return connected_parts(mesh.n_cells, mesh.cells_on_edge[~is_wall])[0], len(
-        np.unique(coast[boundary_vertices(mesh)])
-    )
+    return count_seas_and_coasts(mesh.n_cells, mesh.cells_on_edge, mesh.vertices_on_edge, boundary_vertices(mesh))
 
 
 def shares_of_circulation(mesh: VoronoiMesh, wall_slip: float) -> Array:

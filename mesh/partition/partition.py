@@ -12,14 +12,15 @@ from mesh.partition.cell_graph import CellGraph, cell_graph, part_of, pieces
 from mesh.partition.mending import broken_blocks, mended
 from mesh.partition.metis import largest_weight, metis_blocks
 from mesh.plain import plain_count
+from mesh.shown import Rows, Shown
 from mesh.voronoi_mesh import Topology
 
 WHOLE_WEIGHT = 1000
 """METIS takes whole weights; this is that of a mean cell."""
 
 
-@dataclass(frozen=True, eq=False)
-class Partition:
+@dataclass(frozen=True, eq=False, repr=False)
+class Partition(Shown):
     """The block of each cell, `block_of_cell` (n_cells,) from 0 to `n_blocks` - 1.
 
     `mended_blocks` are those that METIS left in pieces or empty; they lost their smaller pieces to neighbours, or took
@@ -29,6 +30,13 @@ class Partition:
     block_of_cell: Index
     n_blocks: int
     mended_blocks: tuple[int, ...] = ()
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        sizes = np.bincount(self.block_of_cell, minlength=self.n_blocks)
+        return f"Partition of {len(self.block_of_cell)} cells into {self.n_blocks} blocks", {
+            "cells of a block": f"{sizes.min()} to {sizes.max()}, {sizes.mean():.6g} in the mean",
+            "mended blocks": f"{len(self.mended_blocks)}",
+        }
 
 
 def partition_mesh(mesh: Topology, blocks: int, weights: Array | Sequence[float] | None = None) -> Partition:

@@ -9,13 +9,14 @@ from numpy.typing import NDArray
 from mesh.arrays import Array
 from mesh.regions.coastline import smooth_coastline
 from mesh.regions.outline import Outline
+from mesh.shown import Rows, Shown, in_words
 
 HALF_WIDTH = 0.6
 """In spacings, of an isthmus: more than half, so that it stays where spits that are as narrow as a cell go."""
 
 
-@dataclass(frozen=True, eq=False)
-class Region:
+@dataclass(frozen=True, eq=False, repr=False)
+class Region(Shown):
     """A part of the sphere, called the sea; the rest is land, and between them runs the coast.
 
     `signed_distance` takes unit vectors (n, 3) and gives radians (n,) to the coast, positive in the sea and negative
@@ -55,5 +56,8 @@ class Region:
 
         return smooth_coastline(with_isthmuses, spacing, all_seas, self.name)
 
-    def __repr__(self) -> str:
-        return f"<Region {self.name}>"
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        rows = {"points in it": "by the sign of the distance to its coast" if self.inside is None else "told exactly"}
+        if self.isthmuses is not None:
+            rows["isthmuses"] = f"{len(self.isthmuses.starts)} arcs on land that keep seas apart"
+        return f"Region {in_words(self.name)}", rows

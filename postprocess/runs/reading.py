@@ -14,11 +14,13 @@ from mesh.errors import MeshError
 from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
 from mesh.safe_files import AnyPath, dataset
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.shown import Rows, Shown, in_words, span
+from mesh.voronoi_mesh import VoronoiMesh, share_of_sphere, sphere_in_words
 from postprocess.runs.labelled import grid_of_uxarray, opened_by_xarray
 from swe.constants import SECONDS_PER_DAY
 from swe.diagnostics.outputs import FIELDS
 from swe.errors import InputError
+from swe.numerics_in_words import numerics_in_words
 from swe.output.files import DIAGNOSTICS_FILE, HISTORY_FILE, MESH_FILE, load_record, read_series
 
 if TYPE_CHECKING:
@@ -45,16 +47,20 @@ class _Fields(dict[str, Array]):
         )
 
 
-@dataclass(frozen=True)
-class Snapshot:
+@dataclass(frozen=True, repr=False)
+class Snapshot(Shown):
     """Fields by name, on one day since the start."""
 
     day: float
     fields: dict[str, Array]
 
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        units = {name: FIELDS[name].units if name in FIELDS else "" for name in self.fields}
+        return f"Snapshot of day {self.day:g}", {name: span(self.fields[name], units[name]) for name in self.fields}
+
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Run:
+class Run(Shown):
     """A run directory: what its record says, and its files, each read on first use.
 
     `case` is the name of the case and `parameters` are its parameters; `sampling` says how the initial thickness was
@@ -74,16 +80,30 @@ class Run:
     days: Array
     cells: int
 
-    def __repr__(self) -> str:
-        of_days = "" if "days" not in self.record else f" of {self.record['days']:g}"
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        of_days = "" if "days" not in self.record else f" of {in_words(self.record['days'])}"
         radius = self.parameters.get("radius")
-        sphere = "" if radius is None else f" on a sphere of radius {radius:g} m"
-        return (
-            f"<Run of {self.case} in {self.directory}\n"
-            f"  {self.record.get('status', 'without a status')}, day {self.days[-1]:g}{of_days}\n"
-            f"  mesh: {self.cells} cells{sphere}\n"
-            f"  snapshots: {len(self.days)}, days {days_in_words(self.days)}>"
-        )
+        rows = {
+            "folder": str(self.directory),
+            "status": f"{self.record.get('status', 'unknown')}, day {self.days[-1]:g}{of_days}",
+            "mesh": f"{self.cells} cells" + ("" if radius is None else f" on {sphere_in_words(radius)}"),
+            "coast": self._coast_in_words(),
+            **numerics_in_words(self.record["configuration"], self.record.get("forcings", [])),
+            "step": f"{self.time_step:g} s, {self.steps} steps",
+            "snapshots": f"{len(self.days)}, days {days_in_words(self.days)}",
+            "fields": ", ".join(self.record.get("fields", FIELDS)),
+        }
+        return f"Run of {self.case}", {name: words for name, words in rows.items() if words}
+
+    def _coast_in_words(self) -> str:
+        """What the file of the mesh tells of its coast, without reading more; empty if it has none or is not there."""
+        try:
+            with dataset(self.directory / MESH_FILE) as file:
+                if np.any(file["boundaryVertex"][:]):
+                    return share_of_sphere(np.asarray(file["areaCell"][:]), float(file.sphere_radius))
+        except (OSError, RuntimeError, LookupError, AttributeError, ValueError):
+            pass  # whoever reads the mesh is told what is wrong with it
+        return ""
 
     def __enter__(self) -> "Run":
         return self

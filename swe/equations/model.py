@@ -9,7 +9,8 @@ import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.discrete.walls import circulation_signs, closed_mesh, wall_edges
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.shown import Rows, Shown, in_words, span
+from mesh.voronoi_mesh import VoronoiMesh, coast_in_words, mesh_in_words
 from swe.equations import kernels
 from swe.equations.measures import measures_of
 from swe.equations.schemes import Ringler2010, Scheme
@@ -31,7 +32,7 @@ class Diagnosis:
     kinetic_energy: Array
 
 
-class ShallowWaterModel:
+class ShallowWaterModel(Shown):
     """The rotating shallow-water equations over topography on a mesh in metres.
 
     The tendency is the bracket that all schemes share, with the kinetic energy and the flux of the `scheme`,
@@ -124,6 +125,20 @@ class ShallowWaterModel:
         self._vorticity = np.empty(mesh.n_vertices)
         self._potential_vorticity = np.empty(mesh.n_vertices)
         self._kinetic_energy = np.empty(mesh.n_cells)
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        rows = {
+            "mesh": mesh_in_words(self.mesh),
+            "coast": coast_in_words(self.mesh),
+            "wall slip": in_words(self.wall_slip) if self.wall_slip else "",
+            "scheme": in_words(getattr(self.scheme, "name", type(self.scheme).__name__)),
+            "terms": in_words(", ".join(term.name for term in self.terms)),
+            "wind": "prescribed, only thickness evolves" if self.prescribed_wind else "",
+            "gravity": in_words(self.gravity, "m/s2"),
+            "topography": span(self.topography, "m"),
+            "coriolis": span(self.coriolis, "1/s"),
+        }
+        return "ShallowWaterModel", {name: words for name, words in rows.items() if words}
 
     @property
     def forcings(self) -> tuple[Forcing, ...]:

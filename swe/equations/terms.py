@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.shown import Rows, Shown, in_words
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.state import State
@@ -73,7 +74,7 @@ class Term:
         raise NotImplementedError(f"the term {self.name} acts in the stages of a step")
 
 
-class Forcing(Term):
+class Forcing(Shown, Term):
     """A user's own term, made of plain functions of mesh, state and time, which must not change their arguments.
 
     Parameters
@@ -112,6 +113,15 @@ class Forcing(Term):
     def at_walls(self, wall_slip: float) -> "Forcing":
         """See `Term`."""
         return self
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        """Its name and what it changes, and the functions and coefficients that it was made with."""
+        rows = {"changes": ", ".join(self.changes).replace("_", " ")}
+        for name, value in vars(self).items():
+            if not name.startswith("_") and name not in ("name", "meaning", "changes") and value is not None:
+                own = getattr(value, "__self__", None) is self
+                rows |= {} if own else {name.replace("_", " "): in_words(value)}
+        return f"{type(self).__name__} {self.name}", rows
 
     def stable_step(self, mesh: VoronoiMesh) -> float:
         """Longest time step, s, that the term itself stands on `mesh`, in metres; without bound by default."""

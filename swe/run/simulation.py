@@ -11,6 +11,7 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.integrals.quadrature import Sampling
 from mesh.plain import plain_path
+from mesh.shown import Rows, Shown
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.configuration import (
     DEFAULT_CHECKPOINT_INTERVAL,
@@ -42,6 +43,7 @@ from swe.run.composition import (
 )
 from swe.run.memory import return_freed_memory
 from swe.run.progress import ProgressBar
+from swe.run.shown import rows_of_simulation
 from swe.run.signals import StopRequest, stop_requests
 from swe.run.threads import worthwhile_threads
 from swe.run.watch import Callback, Watch
@@ -57,7 +59,7 @@ CELL_STEPS_PER_CALL = 400_000
 """Cells of a process times steps between two checks for signals, and updates of the progress bar: some 50 ms."""
 
 
-class Simulation:
+class Simulation(Shown):
     """One run of a case on a mesh.
 
     Parameters
@@ -178,12 +180,10 @@ class Simulation:
             self.set_back_to(reached.state, reached.time, reached.steps)
         return_freed_memory()
 
-    def __repr__(self) -> str:
-        place = "" if self.recorder is None else f", written to {self.recorder.directory}"
-        return (
-            f"<Simulation of {self.case.name} on {self.mesh.n_cells} cells: day {self.time / SECONDS_PER_DAY:g}, "
-            f"{self.steps} steps, time step {self.configuration.time_step:g} s{place}>"
-        )
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        directory = None if self.recorder is None else self.recorder.directory
+        rows = rows_of_simulation(self.case, self.model, self.configuration, self.loops, self._now(), directory)
+        return f"Simulation of {self.case.name}", rows
 
     def set_back_to(self, state: State, time: float, steps: int) -> None:
         """Continue from `state` at `time`, seconds, after `steps` steps; keeps the arrays of the present state."""

@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 
 from mesh.plain import plain_number
+from mesh.shown import Rows, Shown, in_words
 from swe.errors import InputError
 from swe.stepping.schedule import ROUNDING
 
 
-@dataclass(frozen=True)
-class Callback:
+@dataclass(frozen=True, repr=False)
+class Callback(Shown):
     """Calls `function` with the simulation after the first step that reaches each whole multiple of `interval` seconds.
 
     The function may read everything but must change nothing. Raises `InputError` if the interval is not positive.
@@ -28,6 +29,9 @@ class Callback:
         if not callable(self.function):
             raise InputError(f"a callback is {self.function!r}; it must be a function of the simulation")
         object.__setattr__(self, "interval", interval)
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        return f"Callback of {in_words(self.function)}", {"interval": in_words(self.interval, "s")}
 
 
 class Watch:

@@ -2,12 +2,13 @@
 
 import json
 import re
+from dataclasses import make_dataclass
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cases import Williamson1, Williamson2, find_case
+from cases import CASES, Williamson1, Williamson2, find_case
 from cases.parameters import split_settings, units_and_meanings
 from mesh import VoronoiMesh
 from swe import Simulation
@@ -171,12 +172,36 @@ def test_case_that_cannot_be_named_is_refused(splash: Path) -> None:
         find_case(f"{splash}:Splash")
 
 
-def test_cases_show_name_title_and_what_is_not_the_default(splash: Path) -> None:
-    title = "Williamson test case 2: steady geostrophic flow"
-    assert repr(Williamson2()) == f"<Case williamson2 ({title})>"
-    assert repr(Williamson2(angle=np.float32(0.5))) == f"<Case williamson2 ({title}): angle = 0.5>"
+def test_cases_show_title_parameters_and_what_is_not_the_default(splash: Path) -> None:
+    lines = repr(Williamson2(angle=np.float32(0.5))).splitlines()
+    assert lines[:2] == ["<Case williamson2", "  title: Williamson test case 2: steady geostrophic flow"]
+    assert "  sphere: radius 6371220 m, gravity 9.80616 m/s2, rotation rate 7.292e-05 1/s" in lines
+    assert "  angle: 0.5 rad (default 0)" in lines
+    assert "  angle: 0 rad" in repr(Williamson2())
     case = find_case(f"{splash}:Splash", {"height": 50.0, "gravity": 9})
-    assert repr(case) == f"<Case {splash}:Splash (Splash): gravity = 9.0, height = 50.0>"
+    lines = repr(case).splitlines()
+    assert lines[0] == f"<Case {splash}:Splash"
+    assert "gravity 9 m/s2 (default 9.80616)" in repr(case)
+    assert any(line.startswith("  height: 50") and "(default " in line for line in lines)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_each_case_shows_all_its_parameters_in_a_few_lines(name: str) -> None:
+    case = CASES[name]()
+    assert len(repr(case).splitlines()) <= 13
+    assert len(repr(case)) <= 900
+    for parameter in case.parameters():
+        assert f"{parameter.replace('_', ' ')}" in repr(case)
+    assert "see parameters()" not in repr(case)
+
+
+def test_a_case_of_many_parameters_shows_how_many_more_it_has() -> None:
+    many = make_dataclass(
+        "Many", [(f"p{number}", float, 1.0) for number in range(10)], bases=(Williamson2,), frozen=True
+    )
+    assert "  p4: 1\n" in repr(many())
+    assert "p5: 1" not in repr(many())
+    assert "more parameters: 5; see parameters()" in repr(many())
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,9 @@ import numpy as np
 import pytest
 
 import trisk
+from mesh import VoronoiMesh
 from postprocess.runs import reading
+from swe.diagnostics.outputs import FIELDS
 from swe.errors import InputError
 
 xarray = pytest.importorskip("xarray")
@@ -59,12 +61,34 @@ def test_files_are_closed_with_the_run_and_opened_again(mountain_run: Path) -> N
 
 
 def test_a_run_shows_itself_in_a_few_lines(mountain_run: Path) -> None:
-    assert repr(trisk.open_run(mountain_run)).splitlines() == [
-        f"<Run of williamson5 in {mountain_run}",
-        "  completed, day 0.5 of 0.5",
-        "  mesh: 162 cells on a sphere of radius 6.37122e+06 m",
-        "  snapshots: 3, days 0, 0.25, 0.5>",
+    run = trisk.open_run(mountain_run)
+    assert repr(run).splitlines() == [
+        "<Run of williamson5",
+        f"  folder: {mountain_run}",
+        "  status: completed, day 0.5 of 0.5",
+        "  mesh: 162 cells on a sphere of radius 6371.22 km",
+        "  scheme: ringler2010",
+        "  integrator: rk4",
+        f"  step: {run.time_step:g} s, {run.steps} steps",
+        "  snapshots: 3, days 0, 0.25, 0.5",
+        f"  fields: {', '.join(FIELDS)}>",
     ]
+    title, *rows = repr(run.snapshot(0.25)).splitlines()
+    assert title == "<Snapshot of day 0.25"
+    assert len(rows) == len(FIELDS)
+    thickness = run.snapshot(0.25).fields["thickness"]
+    assert rows[0] == f"  thickness: {thickness.min():g} to {thickness.max():g} m"
+
+
+def test_a_run_at_a_coast_shows_the_share_of_the_sea(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    sea = trisk.cull_mesh(small_mesh, "0,360,-90,20")
+    trisk.Simulation(sea, trisk.LakeAtRest(), tmp_path / "run").run(days=0.1, progress=False)
+    run = trisk.open_run(tmp_path / "run")
+    share = 100.0 * sea.area_cell.sum() / (4.0 * np.pi)
+    assert 50.0 < share < 75.0
+    assert f"coast: the sea covers {share:.3g} % of the sphere\n" in repr(run)
+    (tmp_path / "run" / "mesh.nc").write_bytes(b"nothing")
+    assert "coast:" not in repr(trisk.open_run(tmp_path / "run"))
 
 
 @pytest.mark.parametrize(("name", "place"), [("data", "history.nc"), ("diagnostics", "diagnostics.nc")])

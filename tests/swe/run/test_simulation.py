@@ -227,15 +227,19 @@ def test_a_state_of_another_mesh_is_refused(small_mesh: VoronoiMesh, fields, wor
         Simulation(small_mesh, Wrong())
 
 
-def test_objects_show_themselves_in_a_line(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
-    assert repr(small_mesh) == (
-        "<VoronoiMesh of 162 cells, 480 edges and 320 vertices on the unit sphere, density uniform>"
-    )
-    assert repr(small_mesh.scaled(6371220.0)).endswith("on a sphere of radius 6.37122e+06 m, density uniform>")
-    simulation = Simulation(small_mesh, Williamson2(), tmp_path / "run", time_step=1800.0)
-    words = "<Simulation of williamson2 on 162 cells: day 0, 0 steps, time step 1800 s, written to "
-    assert repr(simulation) == f"{words}{tmp_path}/run>"
+def test_a_simulation_shows_what_it_computes_and_how_far_it_is(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
+    simulation = Simulation(small_mesh, Williamson2(), tmp_path / "run", time_step=1800.0, upwinding=0.5)
+    title, *rows = repr(simulation).splitlines()
+    assert title == "<Simulation of williamson2"
+    assert rows[0] == "  case: Williamson test case 2: steady geostrophic flow"
+    assert rows[1].startswith("  mesh: 162 cells on a sphere of radius 6371.22 km, mean spacing 1")
+    assert rows[2:5] == ["  scheme: ringler2010", "  integrator: rk4, fused loops", "  options: upwinding 0.5"]
+    assert rows[5].startswith("  step: 1800 s, Courant number 0.")
+    assert rows[6:] == ["  reached: day 0, 0 steps", f"  output: {tmp_path}/run>"]
     simulation.run(days=0.5, progress=False)
-    assert "day 0.5, 24 steps" in repr(simulation)
+    assert "reached: day 0.5, 24 steps\n" in repr(simulation)
+    assert repr(Simulation(small_mesh, Williamson2())).endswith("output: none>")
     state = State(np.linspace(50.0, 200.0, 162), np.linspace(-7.0, 3.0, 480))
-    assert repr(state) == ("<State of 162 cells and 480 edges: thickness 50 to 200 m, normal velocity up to 7 m/s>")
+    assert repr(state) == (
+        "<State of 162 cells and 480 edges\n  thickness: 50 to 200 m\n  normal velocity: -7 to 3 m/s>"
+    )
