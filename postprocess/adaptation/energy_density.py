@@ -1,7 +1,7 @@
 """The density of a mesh that follows the kinetic energy of a run, after Ju, Ringler and Gunzburger (2011), section 4.2.
 
 rho = max(FLOOR, KE / KEmax)^POWER, KE being smoothed before by passes over neighbouring cells. Spacings go like
-rho^(-1/4), so that they vary by 1 / FLOOR.
+rho^(-1/4), so that they vary by 1 / FLOOR. Other floors and powers may be asked for.
 """
 
 from pathlib import Path
@@ -63,15 +63,17 @@ def write_energy(run: Run, path: Path) -> None:
         variable[:] = energy / energy.max()
 
 
-def request_for(cells: int, path: Path, tolerance: float) -> MeshRequest:
+def request_for(
+    cells: int, path: Path, tolerance: float, floor: float = FLOOR, power: float = POWER
+) -> MeshRequest:
     """A mesh of so many cells, of a residual of `tolerance`, for what `write_energy` has written to `path`."""
     return MeshRequest(
         cells,
         path,
         tolerance=tolerance,
         density_variable=VARIABLE,
-        density_floor=FLOOR,
-        density_power=POWER,
+        density_floor=floor,
+        density_power=power,
     )
 
 
