@@ -63,9 +63,7 @@ def write_energy(run: Run, path: Path) -> None:
         variable[:] = energy / energy.max()
 
 
-def request_for(
-    cells: int, path: Path, tolerance: float, floor: float = FLOOR, power: float = POWER
-) -> MeshRequest:
+def request_for(cells: int, path: Path, tolerance: float, floor: float = FLOOR, power: float = POWER) -> MeshRequest:
     """A mesh of so many cells, of a residual of `tolerance`, for what `write_energy` has written to `path`."""
     return MeshRequest(
         cells,

@@ -178,7 +178,9 @@ class _Runner:
         energy = plan.folder / f"energy-{number}.nc"
         if not energy.exists():
             write_energy(before.run, energy)
-        mesh = self._mesh(f"mesh-{number}.nc", request_for(plan.cells, energy, MESH_TOLERANCE, plan.density_floor, plan.density_power))
+        mesh = self._mesh(
+            f"mesh-{number}.nc", request_for(plan.cells, energy, MESH_TOLERANCE, plan.density_floor, plan.density_power)
+        )
         if plan.begin_again:
             return Round(number, 0.0, self._run(f"round-{number}", plan.case, mesh, plan.days))
         first_day = before.first_day + plan.days

@@ -67,8 +67,6 @@ def adapt(
         if not quiet:
             typer.echo(line)
 
-    plan = Plan(
-        output, chosen, cells, fine, days, rounds, begin_again, coast, scheme, density_floor, density_power
-    )
+    plan = Plan(output, chosen, cells, fine, days, rounds, begin_again, coast, scheme, density_floor, density_power)
     made = adapt(plan, not quiet, tell)
     tell(str(write_adaptation(plan, made, ["trisk", *sys.argv[1:]])))
