@@ -79,8 +79,8 @@ def _text(plan: Plan) -> str:
         f"max({plan.density_floor:g}, KE / KEmax)^{plan.density_power:g} of the mean kinetic energy KE over the second "
         f"half of the round before, after {SMOOTHING} passes of smoothing. Errors are differences from a uniform mesh "
         f"of {plan.fine} cells, of which the means over each cell are taken; the cost is the number of cells times "
-        "that of steps. The last row of the errors is what a mesh as good as the fine one would have in a turbulent flow, "
-        "from how much the fine run itself varies over those days."
+        "that of steps. The last row of the errors is what a mesh as good as the fine one would have in a turbulent "
+        "flow, from how much the fine run itself varies over those days."
     )
 
 

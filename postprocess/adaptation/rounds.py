@@ -43,8 +43,8 @@ class Plan:
 
     Each round goes on from the state that the one before has reached, or, with `begin_again`, from the start of the
     case. A uniform mesh of `fine` cells, run for as long, is what all are measured against. Meshes cover the sphere, or
-    with a `coast` (`mesh.regions.find`) the sea within it, the same for all. Densities are max(density_floor, x)^density_power,
-    x being the kinetic energy over its largest value. Everything is in `folder`.
+    with a `coast` (`mesh.regions.find`) the sea within it, the same for all. Densities are
+    max(density_floor, x)^density_power, x being the kinetic energy over its largest value. Everything is in `folder`.
     """
 
     folder: Path
@@ -81,7 +81,7 @@ class Plan:
 
     @property
     def diagnostics_interval(self) -> float:
-        """Seconds between rows of diagnostics: the usual, or more where rounds are so long that steps need not be cut."""
+        """Seconds between rows of diagnostics: the usual, or more in long rounds, so that steps are not cut."""
         return max(Options.diagnostics_interval, self.snapshot_days * SECONDS_PER_DAY / DIAGNOSTICS_PER_SNAPSHOT)
 
     def recorded(self) -> dict[str, Any]:
