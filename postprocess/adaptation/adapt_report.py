@@ -59,8 +59,8 @@ def write_adaptation(plan: Plan, made: Adaptation, arguments: Sequence[str]) -> 
     energy = [each.window.mean("kinetic_energy") for each in compared]
     differences = [each.surface for each in compared]
     figures = {
-        "spacing": _maps(compared, spacing, "spacing (km)", _logarithmic(spacing)),
-        "kinetic_energy": _maps(compared, energy, "mean kinetic energy (m² s⁻²)", _logarithmic(energy)),
+        "spacing": _maps(compared, spacing, "spacing (km)", _positive(spacing)),
+        "kinetic_energy": _maps(compared, energy, "mean kinetic energy (m² s⁻²)", _positive(energy)),
         "error": _maps(compared, differences, "mean surface minus that of the fine run (m)", _both_signs(differences)),
         "law": _law_figure(compared),
     }
@@ -116,10 +116,10 @@ def _compared(error: float, other: float, noise: float) -> str:
     return "smaller" if error < other else "larger"
 
 
-def _logarithmic(fields: Sequence[Array]) -> Normalize:
-    """Colours by the logarithm of positive values."""
-    most = max(each.max() for each in fields)
-    return LogNorm(max(min(each.min() for each in fields), most / COLOUR_RANGE), most)
+def _positive(fields: Sequence[Array]) -> Normalize:
+    """Colours of positive values, by their logarithm where they span a power of ten: else a colour bar lacks numbers."""
+    least, most = min(each.min() for each in fields), max(each.max() for each in fields)
+    return Normalize(least, most) if most < 10.0 * least else LogNorm(max(least, most / COLOUR_RANGE), most)
 
 
 def _both_signs(fields: Sequence[Array]) -> Normalize:
@@ -129,15 +129,18 @@ def _both_signs(fields: Sequence[Array]) -> Normalize:
 
 
 def _maps(compared: Sequence[Comparison], fields: Sequence[Array], label: str, norm: Normalize) -> Figure:
-    """A map of a field (n_cells,) for each run, all with the same colours."""
-    across, down = min(2, len(fields)), (len(fields) + 1) // 2
-    colours = "viridis" if isinstance(norm, LogNorm) else "RdBu_r"
-    figure = Figure(figsize=(6.4 * across, 3.9 * down), layout="constrained")
+    """A map of a field (n_cells,) for each run, all with the same colours and view."""
+    view = _view(compared[-1].window.run.mesh)
+    # Maps of a sea are square, those of the globe twice as wide as high.
+    across, width = (3, 3.9) if view else (2, 6.4)
+    down = -(-len(fields) // across)
+    colours = "RdBu_r" if min(each.min() for each in fields) < 0.0 else "viridis"
+    figure = Figure(figsize=(width * across, 3.9 * down), layout="constrained")
     for place, (each, field) in enumerate(zip(compared, fields, strict=True), 1):
-        window, mesh = each.window, each.window.run.mesh
-        axes = figure.add_subplot(down, across, place)
-        plot_field(mesh, field, axes, norm=norm, cmap=colours, label=label, **_view(mesh))
+        window, axes = each.window, figure.add_subplot(down, across, place)
+        plot_field(window.run.mesh, field, axes, norm=norm, cmap=colours, colour_bar=False, **view)
         axes.set_title(f"{window.name}, days {window.first:g} to {window.first + window.days:g}")
+    figure.colorbar(axes.collections[-1], ax=figure.axes, shrink=0.8, label=label)
     return figure
 
 
@@ -146,7 +149,7 @@ def _view(mesh: VoronoiMesh) -> dict[str, Any]:
     if not has_walls(mesh):
         return {}
     points = normalize(mesh.cell_points)
-    middle = normalize(points.sum(axis=0))
+    middle = normalize(mesh.area_cell @ points)
     longitude, latitude = to_lonlat(middle)
     reach = float(np.degrees(arc_length(points, middle).max()))
     return {"centre": (float(np.degrees(longitude)), float(np.degrees(latitude))), "extent": min(2.1 * reach, 180.0)}

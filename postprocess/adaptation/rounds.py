@@ -16,7 +16,7 @@ from mesh.regions.find import find_region
 from mesh.safe_files import written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.adaptation.carried import Continued, carried_over
-from postprocess.adaptation.energy_density import FLOOR, POWER, request_for, write_energy
+from postprocess.adaptation.energy_density import MILD_FLOOR, MILD_POWER, request_for, write_energy
 from postprocess.runs.reading import Run
 from postprocess.studies.study_folder import Task, Tell, require_days
 from swe.configuration import Options, SchemeName
@@ -56,8 +56,8 @@ class Plan:
     begin_again: bool = False
     coast: str | None = None
     scheme: SchemeName = Options.scheme
-    density_floor: float = FLOOR
-    density_power: float = POWER
+    density_floor: float = MILD_FLOOR
+    density_power: float = MILD_POWER
 
     def __post_init__(self) -> None:
         require_days(self.days)

@@ -36,11 +36,11 @@ def adapt(
     ] = None,
     density_floor: Annotated[
         float | None,
-        typer.Option("--density-floor", help="Raise the energy, over its largest value, to this; by default to 0.1."),
+        typer.Option("--density-floor", help="Raise the energy, over its largest value, to this; by default to 0.001."),
     ] = None,
     density_power: Annotated[
         float | None,
-        typer.Option("--density-power", help="Power of the energy that gives the density of a mesh; by default 4."),
+        typer.Option("--density-power", help="Power of the energy that gives the density of a mesh; by default 0.5."),
     ] = None,
     scheme: Scheme = "ringler2010",
     settings: Settings = None,
@@ -54,14 +54,14 @@ def adapt(
     from cases import find_case
     from cases.parameters import split_settings
     from postprocess.adaptation.adapt_report import write_adaptation
-    from postprocess.adaptation.energy_density import FLOOR, POWER
+    from postprocess.adaptation.energy_density import MILD_FLOOR, MILD_POWER
     from postprocess.adaptation.rounds import Plan, adapt
 
     chosen = find_case(case, split_settings(settings or ()))
     days = chosen.recommended_days if days is None else days
     fine = FINER * cells if fine is None else fine
-    density_floor = FLOOR if density_floor is None else density_floor
-    density_power = POWER if density_power is None else density_power
+    density_floor = MILD_FLOOR if density_floor is None else density_floor
+    density_power = MILD_POWER if density_power is None else density_power
 
     def tell(line: str) -> None:
         if not quiet:

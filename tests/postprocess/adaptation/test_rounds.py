@@ -8,12 +8,13 @@ from types import SimpleNamespace
 import netCDF4
 import numpy as np
 import pytest
+from matplotlib.colors import LogNorm, Normalize
 
 from cases import Galewsky
 from mesh import VoronoiMesh
 from mesh.parts.cutting import without_cells
-from postprocess.adaptation.adapt_report import verdict, write_adaptation
-from postprocess.adaptation.energy_density import SMOOTHING, asked_spacing, smoothed, time_mean
+from postprocess.adaptation.adapt_report import _positive, verdict, write_adaptation
+from postprocess.adaptation.energy_density import FLOOR, POWER, SMOOTHING, asked_spacing, smoothed, time_mean
 from postprocess.adaptation.errors import EQUAL_COST, FINE, UNIFORM, comparisons, sampling_row
 from postprocess.adaptation.rounds import Adaptation, Plan, adapt, cells_of_equal_cost
 from swe.configuration import Options
@@ -23,7 +24,8 @@ from swe.errors import InputError
 
 @pytest.fixture(scope="module")
 def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:
-    return Plan(tmp_path_factory.mktemp("adapt"), Galewsky(), 162, 642, 0.5, 2)
+    folder = tmp_path_factory.mktemp("adapt")
+    return Plan(folder, Galewsky(), 162, 642, 0.5, 2, density_floor=FLOOR, density_power=POWER)
 
 
 @pytest.fixture(scope="module")
@@ -132,6 +134,26 @@ def test_sampling_is_the_difference_of_halves_of_the_averaged_days(plan: Plan, m
 def test_steps_of_long_rounds_are_not_cut_to_rows_of_diagnostics(plan: Plan) -> None:
     assert plan.diagnostics_interval == Options.diagnostics_interval
     assert replace(plan, days=720.0).diagnostics_interval == 3.6 * SECONDS_PER_DAY
+
+
+def test_spacings_vary_less_by_default(plan: Plan, tmp_path: Path) -> None:
+    mild = Plan(tmp_path, Galewsky(), 162, 642, 0.5, 2)
+    energies = np.array([0.0, 0.5, 1.0])
+
+    def ratio(asked: Plan) -> float:
+        spacing = asked_spacing(np.maximum(asked.density_floor, energies) ** asked.density_power, np.ones(3))
+        return float(spacing.max() / spacing.min())
+
+    assert ratio(plan) == pytest.approx(10.0)
+    assert ratio(mild) == pytest.approx(2.37, abs=0.01)
+
+
+def test_colours_follow_the_logarithm_where_values_span_a_power_of_ten() -> None:
+    near, far = np.array([70.0, 190.0]), np.array([0.01, 190.0])
+    assert type(_positive([near])) is Normalize
+    norm = _positive([near, far])
+    assert isinstance(norm, LogNorm)
+    assert (norm.vmin, norm.vmax) == (pytest.approx(0.19), 190.0)
 
 
 def test_the_report(plan: Plan, made: Adaptation) -> None:
