@@ -117,7 +117,7 @@ def _compared(error: float, other: float, noise: float) -> str:
 
 
 def _positive(fields: Sequence[Array]) -> Normalize:
-    """Colours of positive values, by their logarithm where they span a power of ten: else a colour bar lacks numbers."""
+    """Colours of positive values, by their logarithm where they span a power of ten: else the bar lacks numbers."""
     least, most = min(each.min() for each in fields), max(each.max() for each in fields)
     return Normalize(least, most) if most < 10.0 * least else LogNorm(max(least, most / COLOUR_RANGE), most)
 

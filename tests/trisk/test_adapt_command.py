@@ -15,6 +15,9 @@ def test_rounds_and_report(trisk: Call, tmp_path: Path) -> None:
     assert {path.name for path in folder.iterdir() if path.is_dir()} == {
         *("round-0", "round-1", "uniform", "equal-cost", "fine", "figures")
     }
+    assert {path.name for path in (folder / "figures").iterdir()} == {
+        *("spacing.png", "kinetic_energy.png", "error.png", "law.png")
+    }
     plan = json.loads((folder / "plan.json").read_text())
     assert (plan["density_floor"], plan["density_power"]) == (0.001, 0.5)
     assert "round 1" in (folder / "report.html").read_text()
