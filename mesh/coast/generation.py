@@ -39,20 +39,24 @@ class Shore:
 
 
 def region_mesh(
-    region: Region, request: MeshRequest, callback: Callback | None = None, shore: Shore | None = None
+    region: Region,
+    request: MeshRequest,
+    callback: Callback | None = None,
+    shore: Shore | None = None,
+    smoothing: float | None = None,
 ) -> VoronoiMesh:
     """The validated mesh, on the unit sphere, of the cells that fill the sea of a region up to its coast.
 
-    The coast is smoothed to `COAST_SPACINGS` mean spacings. Of the `request` count cells, density, start (`fibonacci`
-    by default, and spread evenly under a density), method (`lbfgs` or `lloyd`), tolerance (1e-6 mean spacings by
-    default), iterations, seconds and seed. Short edges are mended (`mesh.coast.short_edges`). Raises `MeshError` if no
-    such mesh can be made.
+    The coast is smoothed to the width `smoothing`, radians, by default `COAST_SPACINGS` mean spacings. Of the `request`
+    count cells, density, start (`fibonacci` by default, and spread evenly under a density), method (`lbfgs` or
+    `lloyd`), tolerance (1e-6 mean spacings by default), iterations, seconds and seed. Short edges are mended
+    (`mesh.coast.short_edges`). Raises `MeshError` if no such mesh can be made.
     """
     require_possible_with_coast(request)
     begin, density = time.perf_counter(), density_of(request)
     limits = coast_limits(request)
-    spacing = spacing_before_coastline(region, cells_of(request))
-    rings = region.coastline(COAST_SPACINGS * spacing)
+    smoothing = coast_smoothing(region, cells_of(request)) if smoothing is None else smoothing
+    rings = region.coastline(smoothing)
     if shore is not None:
         density = RaisedDensity(density, np.concatenate(rings), shore.width, shore.factor)
     coastline = Coastline(rings)
@@ -88,6 +92,11 @@ def spacing_before_coastline(region: Region, cells: int) -> float:
     if part == 0.0:
         raise MeshError(f"{region.name}: there is no sea, or hardly any; take another region")
     return float(np.sqrt(8.0 * np.pi * part / (np.sqrt(3.0) * cells)))
+
+
+def coast_smoothing(region: Region, cells: int) -> float:
+    """Width (radians) to which the coast of a region is smoothed for a mesh of so many cells."""
+    return COAST_SPACINGS * spacing_before_coastline(region, cells)
 
 
 def converge_at_sea(

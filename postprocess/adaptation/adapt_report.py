@@ -1,20 +1,20 @@
 """The page that shows what rounds of adaptation gave."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.colors import LogNorm
+from matplotlib.colors import LogNorm, Normalize
 from matplotlib.figure import Figure
 
 from mesh.arrays import Array
 from mesh.discrete.walls import has_walls
 from mesh.geometry.sphere import arc_length, normalize, to_lonlat
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.adaptation.energy_density import FLOOR, POWER, SMOOTHING, asked_spacing
-from postprocess.adaptation.errors import Window, rows_of, windows
+from postprocess.adaptation.energy_density import SMOOTHING, asked_spacing
+from postprocess.adaptation.errors import EQUAL_COST, UNIFORM, Comparison, comparisons, sampling_row
 from postprocess.adaptation.rounds import Adaptation, Plan
 from postprocess.figures.field_map import plot_field
 from postprocess.studies.page import table_of, write_page
@@ -24,6 +24,9 @@ TABLE_FILE = "adapt.csv"
 
 COLOUR_RANGE = 1000.0
 """Colours span no more than this ratio."""
+
+SHOWN_PERCENT = 99.0
+"""Percent of the cells of the maps of differences whose values lie within their colours."""
 
 MESH_COLUMNS = {
     "name": "run",
@@ -49,56 +52,95 @@ MEASURES = {
 
 def write_adaptation(plan: Plan, made: Adaptation, arguments: Sequence[str]) -> Path:
     """Write the page and the table of an adaptation; return the path of the page."""
-    rows = rows_of(plan, made)
-    write_table(rows, plan.folder / TABLE_FILE)
-    compared = windows(plan, made)
+    compared, sampling = comparisons(plan, made), sampling_row(plan, made)
+    rows = [each.row for each in compared]
+    write_table([*rows, sampling], plan.folder / TABLE_FILE)
+    spacing = [each.window.spacing / 1000.0 for each in compared]
+    energy = [each.window.mean("kinetic_energy") for each in compared]
+    differences = [each.surface for each in compared]
     figures = {
-        "spacing": _maps(compared, "spacing (km)", lambda each: each.spacing / 1000.0),
-        "kinetic_energy": _maps(compared, "mean kinetic energy (m² s⁻²)", lambda each: each.mean("kinetic_energy")),
+        "spacing": _maps(compared, spacing, "spacing (km)", _positive(spacing)),
+        "kinetic_energy": _maps(compared, energy, "mean kinetic energy (m² s⁻²)", _positive(energy)),
+        "error": _maps(compared, differences, "mean surface minus that of the fine run (m)", _both_signs(differences)),
         "law": _law_figure(compared),
     }
-    sections = {"Meshes": table_of(rows, MESH_COLUMNS), "Errors and costs": table_of(rows, ERROR_COLUMNS)}
-    return write_page(
-        plan.folder, f"A mesh that follows {plan.case.name}", _text(plan, rows), arguments, sections, figures
-    )
+    sections = {
+        "Meshes": table_of(rows, MESH_COLUMNS),
+        "Errors and costs": table_of([*rows, sampling], ERROR_COLUMNS),
+    }
+    text = " ".join([_text(plan), verdict(rows, sampling, plan.begin_again)])
+    return write_page(plan.folder, f"A mesh that follows {plan.case.name}", text, arguments, sections, figures)
 
 
-def _text(plan: Plan, rows: Sequence[StudyRow]) -> str:
+def _text(plan: Plan) -> str:
     start = "from the start of the case" if plan.begin_again else "from the state carried over from the round before"
-    text = (
+    return (
         f"Each round runs for {plan.days:g} days on {plan.cells} cells, {start}. The density of its mesh is "
-        f"max({FLOOR:g}, KE / KEmax)^{POWER:g} of the mean kinetic energy KE over the second half of the round before, "
-        f"after {SMOOTHING} passes of smoothing. Errors are differences from a uniform mesh of {plan.fine} cells, of "
-        "which the means over each cell are taken; the cost is the number of cells times that of steps."
+        f"max({plan.density_floor:g}, KE / KEmax)^{plan.density_power:g} of the mean kinetic energy KE over the second "
+        f"half of the round before, after {SMOOTHING} passes of smoothing. Errors are differences from a uniform mesh "
+        f"of {plan.fine} cells, of which the means over each cell are taken; the cost is the number of cells times "
+        "that of steps. The last row of the errors is what a mesh as good as the fine one would have in a turbulent "
+        "flow, from how much the fine run itself varies over those days."
     )
-    return " ".join([text, verdict(rows, plan.begin_again)])
 
 
-def verdict(rows: Sequence[StudyRow], begin_again: bool) -> str:
-    """What the last adapted mesh gains over the uniform one of as many cells, in a sentence for each measure."""
-    last, uniform = (rows[-1], rows[0]) if begin_again else (rows[-2], rows[-1])
+def verdict(rows: Sequence[StudyRow], sampling: StudyRow, begin_again: bool) -> str:
+    """How the last adapted mesh does beside the uniform ones of as many cells and of equal cost, for each measure.
+
+    Differences no larger than those of the `sampling` are called so.
+    """
+    by_name = {row["name"]: row for row in rows}
+    last = [row for row in rows if row["name"] not in (UNIFORM, EQUAL_COST)][-1]
+    uniform, equal = rows[0] if begin_again else by_name[UNIFORM], by_name[EQUAL_COST]
     cost = last["cell_steps"] / uniform["cell_steps"]
-    found = [f"The last adapted mesh costs {cost:.2f} times as much as the uniform one of as many cells."]
+    found = [
+        f"The last adapted mesh costs {cost:.2f} times as much as the uniform one of as many cells, and "
+        f"{last['cell_steps'] / equal['cell_steps']:.2f} times as much as the uniform one of {equal['cells']} cells."
+    ]
     for column, meaning in MEASURES.items():
-        ratio = last[column] / uniform[column]
-        better = "smaller" if ratio < 1.0 else "not smaller"
+        error, noise = last[column], sampling[column]
+        ratio = error / uniform[column]
         found.append(
-            f"Its error in {meaning} is {better}: {last[column]:.3g} for {uniform[column]:.3g}, {ratio:.2f} times; "
-            f"times the cost, {ratio * cost:.2f}."
+            f"Its error in {meaning} is {error:.3g}, {ratio:.2f} times that of as many uniform cells "
+            f"({_compared(error, uniform[column], noise)}; times the cost, {ratio * cost:.2f}) and "
+            f"{error / equal[column]:.2f} times that of equal cost ({_compared(error, equal[column], noise)})."
         )
-    return " ".join(found)
+    better = sum(_compared(last[column], equal[column], sampling[column]) == "smaller" for column in MEASURES)
+    return " ".join([*found, f"At equal cost it is better in {better} of {len(MEASURES)} measures."])
 
 
-def _maps(compared: Sequence[Window], label: str, values: Callable[[Window], Array]) -> Figure:
-    """A map for each run, all with the same colours, which go by the logarithm."""
-    shown = [values(each) for each in compared]
-    most = max(each.max() for each in shown)
-    norm = LogNorm(max(min(each.min() for each in shown), most / COLOUR_RANGE), most)
-    figure = Figure(figsize=(6.4 * min(2, len(shown)), 3.9 * ((len(shown) + 1) // 2)), layout="constrained")
-    for place, (window, field) in enumerate(zip(compared, shown, strict=True), 1):
-        axes = figure.add_subplot((len(shown) + 1) // 2, min(2, len(shown)), place)
-        plot_field(window.run.mesh, field, axes, norm=norm, label=label, **_view(window.run.mesh))
+def _compared(error: float, other: float, noise: float) -> str:
+    """How an error compares with another, in a word or two."""
+    if abs(error - other) <= noise:
+        return "no more than sampling apart"
+    return "smaller" if error < other else "larger"
+
+
+def _positive(fields: Sequence[Array]) -> Normalize:
+    """Colours of positive values, by their logarithm where they span a power of ten: else the bar lacks numbers."""
+    least, most = min(each.min() for each in fields), max(each.max() for each in fields)
+    return Normalize(least, most) if most < 10.0 * least else LogNorm(max(least, most / COLOUR_RANGE), most)
+
+
+def _both_signs(fields: Sequence[Array]) -> Normalize:
+    """Colours that are symmetric about zero; few cells are beyond them."""
+    most = float(np.percentile(np.abs(np.concatenate(fields)), SHOWN_PERCENT))
+    return Normalize(-most, most)
+
+
+def _maps(compared: Sequence[Comparison], fields: Sequence[Array], label: str, norm: Normalize) -> Figure:
+    """A map of a field (n_cells,) for each run, all with the same colours and view."""
+    view = _view(compared[-1].window.run.mesh)
+    # Maps of a sea are square, those of the globe twice as wide as high.
+    across, width = (3, 3.9) if view else (2, 6.4)
+    down = -(-len(fields) // across)
+    colours = "RdBu_r" if min(each.min() for each in fields) < 0.0 else "viridis"
+    figure = Figure(figsize=(width * across, 3.9 * down), layout="constrained")
+    for place, (each, field) in enumerate(zip(compared, fields, strict=True), 1):
+        window, axes = each.window, figure.add_subplot(down, across, place)
+        plot_field(window.run.mesh, field, axes, norm=norm, cmap=colours, colour_bar=False, **view)
         axes.set_title(f"{window.name}, days {window.first:g} to {window.first + window.days:g}")
+    figure.colorbar(axes.collections[-1], ax=figure.axes, shrink=0.8, label=label)
     return figure
 
 
@@ -107,18 +149,18 @@ def _view(mesh: VoronoiMesh) -> dict[str, Any]:
     if not has_walls(mesh):
         return {}
     points = normalize(mesh.cell_points)
-    middle = normalize(points.sum(axis=0))
+    middle = normalize(mesh.area_cell @ points)
     longitude, latitude = to_lonlat(middle)
     reach = float(np.degrees(arc_length(points, middle).max()))
     return {"centre": (float(np.degrees(longitude)), float(np.degrees(latitude))), "extent": min(2.1 * reach, 180.0)}
 
 
-def _law_figure(compared: Sequence[Window]) -> Figure:
+def _law_figure(compared: Sequence[Comparison]) -> Figure:
     """Spacing of each cell against the one that its density asks for."""
     figure = Figure(figsize=(6.4, 5.0), layout="constrained")
     axes: Axes = figure.add_subplot()
-    for window in compared:
-        mesh = window.run.mesh
+    for each in compared:
+        window, mesh = each.window, each.window.run.mesh
         asked = asked_spacing(mesh.mesh_density, mesh.area_cell) / 1000.0
         axes.loglog(asked, window.spacing / 1000.0, ".", markersize=2, label=window.name)
     low, high = axes.get_xlim()

@@ -1,7 +1,8 @@
 """The density of a mesh that follows the kinetic energy of a run, after Ju, Ringler and Gunzburger (2011), section 4.2.
 
 rho = max(FLOOR, KE / KEmax)^POWER, KE being smoothed before by passes over neighbouring cells. Spacings go like
-rho^(-1/4), so that they vary by 1 / FLOOR.
+rho^(-1/4), so that they vary by 1 / FLOOR; with the milder floor and power by 2.4 (docs/adaptation.md says what each
+gives).
 """
 
 from pathlib import Path
@@ -18,6 +19,8 @@ from swe.errors import InputError
 
 VARIABLE = "kinetic_energy"
 FLOOR, POWER, SMOOTHING = 0.1, 4.0, 20
+MILD_FLOOR, MILD_POWER = 0.001, 0.5
+"""Those of rounds of adaptation: the smallest cell sets the time step for all, here by half instead of by ten."""
 
 AVERAGED_SHARE = 0.5
 """Means in time go over the snapshots of this last part of a run, which has then forgotten how it began."""
@@ -64,15 +67,15 @@ def write_energy(run: Run, path: Path) -> None:
         variable[:] = energy / energy.max()
 
 
-def request_for(cells: int, path: Path, tolerance: float) -> MeshRequest:
+def request_for(cells: int, path: Path, tolerance: float, floor: float = FLOOR, power: float = POWER) -> MeshRequest:
     """A mesh of so many cells, of a residual of `tolerance`, for what `write_energy` has written to `path`."""
     return MeshRequest(
         cells,
         path,
         tolerance=tolerance,
         density_variable=VARIABLE,
-        density_floor=FLOOR,
-        density_power=POWER,
+        density_floor=floor,
+        density_power=power,
     )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from mesh.coast.generation import region_mesh
+from mesh.coast.generation import coast_smoothing, region_mesh
 from mesh.errors import MeshWarning
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.pipeline import generate_mesh
@@ -16,10 +16,11 @@ from mesh.regions.find import find_region
 from mesh.safe_files import written_aside
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.adaptation.carried import Continued, carried_over
-from postprocess.adaptation.energy_density import request_for, write_energy
+from postprocess.adaptation.energy_density import MILD_FLOOR, MILD_POWER, request_for, write_energy
 from postprocess.runs.reading import Run
 from postprocess.studies.study_folder import Task, Tell, require_days
 from swe.configuration import Options, SchemeName
+from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError, RunError
 from swe.run.case import Case
 from swe.state import State
@@ -28,6 +29,9 @@ PLAN_FILE = "plan.json"
 MOST_ROUNDS = 100
 SNAPSHOTS = 20
 """Snapshots of a round, half of which go into its means."""
+
+DIAGNOSTICS_PER_SNAPSHOT = 10
+"""Rows of diagnostics between snapshots that lie days apart. The default step divides the interval of these rows."""
 
 MESH_TOLERANCE = 1e-4
 """Residual, in mean spacings, at which an adapted mesh is taken: the field that it follows is known less well."""
@@ -39,7 +43,8 @@ class Plan:
 
     Each round goes on from the state that the one before has reached, or, with `begin_again`, from the start of the
     case. A uniform mesh of `fine` cells, run for as long, is what all are measured against. Meshes cover the sphere, or
-    with a `coast` (`mesh.regions.find`) the sea within it. Everything is in `folder`.
+    with a `coast` (`mesh.regions.find`) the sea within it, the same for all. Densities are
+    max(density_floor, x)^density_power, x being the kinetic energy over its largest value. Everything is in `folder`.
     """
 
     folder: Path
@@ -51,6 +56,8 @@ class Plan:
     begin_again: bool = False
     coast: str | None = None
     scheme: SchemeName = Options.scheme
+    density_floor: float = MILD_FLOOR
+    density_power: float = MILD_POWER
 
     def __post_init__(self) -> None:
         require_days(self.days)
@@ -61,10 +68,21 @@ class Plan:
                 f"the fine mesh of {self.fine} cells is to be finer than one of {self.cells}; ask for more cells"
             )
 
+        if not (0.0 < self.density_floor <= 1.0 and 0.0 < self.density_power < float("inf")):
+            raise InputError(
+                f"a density cannot have the floor {self.density_floor:g} and the power {self.density_power:g}; give a "
+                "floor above 0 and up to 1, and a power above 0"
+            )
+
     @property
     def snapshot_days(self) -> float:
         """Days between snapshots."""
         return self.days / SNAPSHOTS
+
+    @property
+    def diagnostics_interval(self) -> float:
+        """Seconds between rows of diagnostics: the usual, or more in long rounds, so that steps are not cut."""
+        return max(Options.diagnostics_interval, self.snapshot_days * SECONDS_PER_DAY / DIAGNOSTICS_PER_SNAPSHOT)
 
     def recorded(self) -> dict[str, Any]:
         """What is asked for, as numbers and words."""
@@ -87,10 +105,11 @@ class Round:
 
 @dataclass(frozen=True)
 class Adaptation:
-    """The rounds, and the runs that they are measured against: uniform meshes of as many cells and of more."""
+    """The rounds, and uniform meshes: of as many cells, of the cost of the last round, and the fine one."""
 
     rounds: tuple[Round, ...]
     uniform: Run
+    equal_cost: Run
     fine: Run
 
 
@@ -106,7 +125,22 @@ def adapt(plan: Plan, progress: bool, tell: Tell) -> Adaptation:
         rounds.append(runner.following(rounds[-1]))
     whole = plan.days_of_whole()
     uniform = rounds[0].run if plan.begin_again else runner.uniform("uniform", plan.cells, whole)
-    return Adaptation(tuple(rounds), uniform, runner.uniform("fine", plan.fine, whole))
+    same = cells_of_equal_cost(uniform, rounds[-1].run)
+    equal_cost = runner.uniform("equal-cost", same, whole)
+    return Adaptation(tuple(rounds), uniform, equal_cost, runner.uniform("fine", plan.fine, whole))
+
+
+def cost_per_day(run: Run) -> float:
+    """Cells times steps that a run takes for a day: its cost, whatever the machine."""
+    return run.steps * run.cells / float(run.days[-1])
+
+
+def cells_of_equal_cost(uniform: Run, adapted: Run) -> int:
+    """Cells of a uniform mesh that costs as much per day as the `adapted` one.
+
+    The cost of a uniform mesh of N cells goes like N^(3/2), as its steps go like its spacings.
+    """
+    return round(uniform.cells * (cost_per_day(adapted) / cost_per_day(uniform)) ** (2.0 / 3.0))
 
 
 def _require_same_plan(plan: Plan) -> None:
@@ -130,6 +164,8 @@ class _Runner:
     def __init__(self, plan: Plan, progress: bool, tell: Tell) -> None:
         self._plan, self._progress, self._tell = plan, progress, tell
         self._region = None if plan.coast is None else find_region(plan.coast)
+        # Finer meshes fill the same sea: straits that only they resolve would be differences of the case.
+        self._smoothing = None if self._region is None else coast_smoothing(self._region, plan.cells)
 
     def uniform(self, name: str, cells: int, days: float) -> Run:
         """The case from its start on a uniform mesh."""
@@ -142,7 +178,9 @@ class _Runner:
         energy = plan.folder / f"energy-{number}.nc"
         if not energy.exists():
             write_energy(before.run, energy)
-        mesh = self._mesh(f"mesh-{number}.nc", request_for(plan.cells, energy, MESH_TOLERANCE))
+        mesh = self._mesh(
+            f"mesh-{number}.nc", request_for(plan.cells, energy, MESH_TOLERANCE, plan.density_floor, plan.density_power)
+        )
         if plan.begin_again:
             return Round(number, 0.0, self._run(f"round-{number}", plan.case, mesh, plan.days))
         first_day = before.first_day + plan.days
@@ -167,12 +205,20 @@ class _Runner:
             warnings.filterwarnings("ignore", ".*covers a part of the globe", MeshWarning)
             if self._region is None:
                 return generate_mesh(request).mesh
-            return region_mesh(self._region, request)
+            return region_mesh(self._region, request, smoothing=self._smoothing)
 
     def _run(self, name: str, case: Case, mesh: VoronoiMesh, days: float) -> Run:
         """The run of this name, made unless it is there already."""
         plan = self._plan
-        task = Task(plan.folder / name, case, mesh, days, plan.snapshot_days, scheme=plan.scheme)
+        task = Task(
+            plan.folder / name,
+            case,
+            mesh,
+            days,
+            plan.snapshot_days,
+            scheme=plan.scheme,
+            diagnostics_interval=plan.diagnostics_interval,
+        )
         run, reason = task.carry_out(self._progress, self._tell)
         if run is None:
             raise RunError(f"{name} of {plan.folder}: {reason}")

@@ -49,7 +49,10 @@ def require_days(days: float) -> None:
 
 @dataclass(frozen=True)
 class Task:
-    """A run that a study needs: `case` on `mesh` for `days`, a snapshot every `snapshot_days`, in `directory`."""
+    """A run that a study needs: `case` on `mesh` for `days`, a snapshot every `snapshot_days`, in `directory`.
+
+    `diagnostics_interval` is in seconds; the default time step divides the shorter of the two intervals.
+    """
 
     directory: Path
     case: Case
@@ -58,6 +61,7 @@ class Task:
     snapshot_days: float
     time_step: float | None = None
     scheme: SchemeName = Options.scheme
+    diagnostics_interval: float = Options.diagnostics_interval
 
     def carry_out(self, progress: bool, tell: Tell) -> tuple[Run | None, str]:
         """The run, made unless it is there already; or None and the reason why it failed."""
@@ -87,6 +91,7 @@ class Task:
             self.directory,
             time_step=self.time_step,
             snapshot_interval=self.snapshot_days * SECONDS_PER_DAY,
+            diagnostics_interval=self.diagnostics_interval,
             scheme=self.scheme,
             resume=resume,
             overwrite=not resume,

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from mesh import MeshError
-from mesh.coast.generation import COAST_SPACINGS, region_mesh, spacing_before_coastline
+from mesh.coast.generation import COAST_SPACINGS, coast_smoothing, region_mesh, spacing_before_coastline
 from mesh.discrete.walls import wall_edges
 from mesh.mesh_request import MeshRequest
 from mesh.regions.find import find_region
@@ -37,6 +37,16 @@ def test_a_density_refines_part_of_the_sea() -> None:
     dense = mesh.z_cell > 0.68
     rest = mesh.z_cell < 0.52
     assert 3.0 < np.median(mesh.area_cell[rest]) / np.median(mesh.area_cell[dense]) < 5.0
+
+
+def test_meshes_of_one_smoothing_fill_the_same_sea() -> None:
+    region = find_region(BOX)
+    coarse, fine = MeshRequest(60, tolerance=1e-3), MeshRequest(150, tolerance=1e-3)
+    wide = coast_smoothing(region, 20)
+    areas = [region_mesh(region, request, smoothing=wide).area_cell.sum() for request in (coarse, fine)]
+    assert areas[1] == pytest.approx(areas[0], rel=1e-12)
+    # Corners of the box are cut off less for more cells.
+    assert region_mesh(region, fine).area_cell.sum() > 1.03 * areas[1]
 
 
 @pytest.mark.parametrize(
