@@ -73,12 +73,17 @@ def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
         heading = f"{field.title}: {comparison.case}, day {day:g}"
         panels = [each[name] / field.unit for each in values]
         figure = map_figure(panels, names, heading, field.label, colours_for(field.colours, panels))
-        paths.append(_save(figure, folder, f"compare_{name}_day{day:g}"))
+        paths.append(_save(figure, folder, name_of_map(name, day)))
         panels = [each[name] / field.unit for each in differences]
         heading += f"\ndifference from the reference, {reference.name}"
         figure = map_figure(panels, names[1:], heading, field.difference_label, _colours_of_errors(field, panels))
-        paths.append(_save(figure, folder, f"compare_{name}_difference_day{day:g}"))
+        paths.append(_save(figure, folder, name_of_map(name, day, difference=True)))
     return paths
+
+
+def name_of_map(field: str, day: float, difference: bool = False) -> str:
+    """Name of the file, without its ending, of the maps of a field of `MAP_FIELDS` or of its difference."""
+    return f"compare_{field}{'_difference' if difference else ''}_day{day:g}"
 
 
 def _save(figure: Figure, folder: Path, name: str) -> Path:

@@ -12,6 +12,7 @@ from postprocess.reports.sentences import (
     are_equal,
     compared_with_theory,
     counted,
+    has_shares,
     listed,
     number,
     order_in_words,
@@ -49,7 +50,7 @@ def mesh_verdict(rows: Sequence[StudyRow], accepted_order: float | None = None) 
     return {
         "Which mesh is best": [*failed, *best_mesh(last)],
         "Which order": [*orders_in_words(lines, accepted_order), *stalling(lines)],
-        "Where the error lives": [where_in_words(name, row) for name, row in last.items() if _has_shares(row)],
+        "Where the error lives": [where_in_words(name, row) for name, row in last.items() if has_shares(row)],
         "What it costs": costs(lines),
     } | conserved
 
@@ -218,7 +219,3 @@ def _failures(rows: Sequence[StudyRow]) -> list[str]:
     schemes = schemes_of(rows)
     where = listed(f"{spoken(row['family'], row['scheme'], schemes)} at {row['cells']} cells" for row in failed)
     return [f"{len(failed)} of {counted(len(rows), 'run', 'runs')} failed: {where}."]
-
-
-def _has_shares(row: StudyRow) -> bool:
-    return any(name.startswith("error_share_") for name in row)

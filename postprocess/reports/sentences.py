@@ -93,6 +93,11 @@ def compared_with_theory(order: float, expected: float, tolerance: float, what: 
     return f"{'above' if order > expected else 'below'} the {what} that theory expects"
 
 
+def has_shares(row: StudyRow) -> bool:
+    """Whether a row tells where its error lives."""
+    return any(name.startswith("error_share_") for name in row)
+
+
 def where_in_words(name: str, row: StudyRow, error: str = "error") -> str:
     """A sentence on where the error of the line or run of this name lives, from the shares in its row."""
     bands = [zone for zone in BANDS if row.get(f"error_share_{zone}", 0.0) >= LEAST_SHARE and stands_out(row, zone)]

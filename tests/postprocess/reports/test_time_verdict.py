@@ -31,8 +31,8 @@ def test_orders_longest_step_and_gain() -> None:
         "Which order": [
             "The drift of total energy has order 5.00 (5.00 to 5.00 between successive steps), the fifth order that "
             "theory expects.",
-            "The difference in thickness from the run with 150 s has order 4.00 (from two steps alone, so its spread is "
-            "not known), the fourth order that theory expects.",
+            "The difference in thickness from the run with 150 s has order 4.00 (from two steps alone, so its spread "
+            "is not known), the fourth order that theory expects.",
             "The difference in velocity from the run with 150 s is at round-off at every step, so it shows no order.",
             "The run with 150 s has an error of its own, so orders of differences from it come out too high, by 0.09 "
             "where they are 4.",
