@@ -24,6 +24,9 @@ from postprocess.runs.folders import prepared_folder
 ROWS, COLUMNS = 360, 720
 """Pixels of the maps."""
 
+WIDTH, WIDTH_OF_ONE = 9.6, 6.6
+"""Inches of figures with two maps beside each other, and with one: letters are then legible on a page of the former."""
+
 
 @dataclass(frozen=True)
 class MapField:
@@ -116,7 +119,8 @@ def map_figure(panels: list[Array], titles: list[str], heading: str, label: str,
     """One map for each of `panels` with one colour scale; up to two maps beside each other."""
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(6.6 * columns, 3.5 * rows + 1.0), layout="constrained")
+    width = WIDTH if columns > 1 else WIDTH_OF_ONE
+    figure = Figure(figsize=(width, 0.53 * width / columns * rows + 1.0), layout="constrained")
     grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axes, title, values in zip(grid, titles, panels, strict=False):
         drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), colours.options).images[-1]

@@ -9,13 +9,14 @@ import numpy as np
 from mesh.safe_files import name_in_text
 from postprocess.compare.comparison import SHOWN_DIAGNOSTICS, Comparison, Entry, fields_of, fields_on
 from postprocess.compare.shares import error_shares, shares_as_columns
-from postprocess.compare.solutions import RunSolution
+from postprocess.compare.solutions import RunSolution, case_of
+from postprocess.figures.plots import DOTS_PER_INCH
 from postprocess.reports.captions import comparison_captions
 from postprocess.reports.compare_verdict import comparison_verdict
-from postprocess.reports.ranking import DIFFERENCE, ERROR, FIELD_WORDS
+from postprocess.reports.ranking import DIFFERENCE, ERROR, FIELD_WORDS, Wording
 from postprocess.reports.sentences import Verdict
-from postprocess.reports.share_columns import SHARES
-from postprocess.studies.page import table_of, with_palette, write_pictures
+from postprocess.reports.share_columns import share_columns
+from postprocess.studies.page import at_page_size, table_of, write_pictures
 from postprocess.studies.study_folder import StudyRow
 from swe.output.description import ABSENT_CONFIGURATION
 
@@ -29,7 +30,6 @@ NORM_COLUMNS = {
     },
     **{f"uncertainty_{field}": f"uncertainty of {words}, l2" for field, words in FIELD_WORDS.items()},
 }
-SHARE_COLUMNS = KEYS | SHARES
 CONSERVATION_COLUMNS = KEYS | {name: name.replace("_", " ") for name in SHOWN_DIAGNOSTICS[:-1]}
 CONSERVATION_COLUMNS |= {"max_speed": "largest speed (m/s)"}
 
@@ -52,8 +52,7 @@ def names_of(directories: Sequence[Path]) -> list[str]:
 def verdict_of(comparison: Comparison) -> Verdict:
     """What a comparison found, by question."""
     rows = [row for row in comparison_rows(comparison) if _has_norms(row)]
-    is_run = isinstance(comparison.solution, RunSolution)
-    return comparison_verdict(rows, _reference(comparison), DIFFERENCE if is_run else ERROR)
+    return comparison_verdict(rows, _reference(comparison), _wording(comparison))
 
 
 def write_comparison_report(
@@ -62,29 +61,35 @@ def write_comparison_report(
     """Write the report of a comparison, with its `verdict` and the `maps` drawn of it, to `folder`; return its path."""
     rows = comparison_rows(comparison)
     compared = [row for row in rows if _has_norms(row)]
-    day = comparison.days[-1]
+    day, noun = comparison.days[-1], _wording(comparison).noun
     sections = {
-        "Error norms": table_of(compared, NORM_COLUMNS),
-        f"Where it lies on day {day:g}: shares of the square and of the area": table_of(
-            [row for row in compared if row["day"] == day], SHARE_COLUMNS
+        f"Norms of the {noun}": table_of(compared, NORM_COLUMNS),
+        f"Where the {noun} of thickness lies on day {day:g}: shares of its square and of the area": table_of(
+            [row for row in compared if row["day"] == day], KEYS | share_columns(noun)
         ),
         "Changes since the start": table_of(rows, CONSERVATION_COLUMNS),
     }
+    case = case_of(comparison.entries[0].run)
+    title = comparison.case if case is None else case.title
     days = "day" if len(comparison.days) == 1 else "days"
     text = (
-        f"{comparison.case}, {days} {', '.join(f'{each:g}' for each in comparison.days)}, against: "
+        f"{title}, {days} {', '.join(f'{each:g}' for each in comparison.days)}, against: "
         f"{comparison.solution.name}. Norms are those of Williamson et al. (1992)."
     )
     return write_pictures(
         folder,
-        f"Comparison: {comparison.case}, day {day:g}",
+        f"Comparison: {title}, day {day:g}",
         text,
         arguments,
         sections,
-        {path.stem: with_palette(path.read_bytes()) for path in maps},
+        {path.stem: at_page_size(path.read_bytes(), DOTS_PER_INCH) for path in maps},
         verdict,
         comparison_captions(day, len(comparison.compared)),
     )
+
+
+def _wording(comparison: Comparison) -> Wording:
+    return DIFFERENCE if isinstance(comparison.solution, RunSolution) else ERROR
 
 
 def _reference(comparison: Comparison) -> str:

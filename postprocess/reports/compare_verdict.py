@@ -9,7 +9,7 @@ from postprocess.studies.study_folder import StudyRow
 LEVELS = (0.001, 0.01, 0.1)
 """Relative norms of which it is told when they are first exceeded."""
 
-LEAST_PERCENTAGE = 1e-4
+LEAST_PERCENTAGE = 1e-6
 """Relative norms below this are told as numbers, not in percent."""
 
 NORMS = "l2 is the root mean square over the area and l∞ the largest value, each divided by that of the reference."

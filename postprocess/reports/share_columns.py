@@ -3,9 +3,11 @@
 from postprocess.compare.shares import ZONES
 from postprocess.reports.sentences import zone_in_words
 
-SHARES = {
-    f"{kind}_share_{zone}": f"{title}, {zone_in_words(zone)}"
-    for zone in ZONES
-    for kind, title in (("error", "squared error"), ("area", "area"))
-}
-"""Columns and what stands above them; see `postprocess.compare.shares`."""
+
+def share_columns(noun: str) -> dict[str, str]:
+    """Columns of shares, see `postprocess.compare.shares`, of what `noun` says, and what stands above them."""
+    return {
+        f"{kind}_share_{zone}": f"{title}, {zone_in_words(zone)}"
+        for zone in ZONES
+        for kind, title in (("error", f"squared {noun}"), ("area", "area"))
+    }

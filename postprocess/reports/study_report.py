@@ -6,7 +6,7 @@ from pathlib import Path
 from mesh.discrete.quality import Quality
 from postprocess.reports.captions import mesh_captions, time_captions
 from postprocess.reports.mesh_verdict import mesh_verdict
-from postprocess.reports.share_columns import SHARES
+from postprocess.reports.share_columns import share_columns
 from postprocess.reports.time_verdict import time_verdict
 from postprocess.studies.lines import lines_of
 from postprocess.studies.mesh_study import Member, Plan
@@ -31,9 +31,9 @@ ERROR_COLUMNS = {
     "uncertainty_thickness": "uncertainty of thickness",
     "worst_longitude": "worst cell: longitude (°)",
     "worst_latitude": "latitude (°)",
-    "worst_to_irregular": "cells away from the nearest that is no hexagon",
+    "worst_to_irregular": "worst cell: cells away from one that is no hexagon",
 }
-SHARE_COLUMNS = {"family": "family", "cells": "cells", **SHARES}
+SHARE_COLUMNS = {"family": "family", "cells": "cells", **share_columns("error")}
 QUALITY_COLUMNS = {"family": "family", **{name: name.replace("_", " ") for name in Quality.__dataclass_fields__}}
 TRUNCATION_COLUMNS = {
     "family": "family",

@@ -48,7 +48,13 @@ def test_the_folder_asked_for_gets_a_report(compare, runs: list[Path], tmp_path:
     assert (code, err) == (0, "")
     report = tmp_path / "of two" / "report.html"
     assert out.splitlines()[-1] == str(report)
-    parts = ('<div class="verdict">', "How large the difference is", "</div>", "<figcaption>", "<h2>Error norms</h2>")
+    parts = (
+        '<div class="verdict">',
+        "How large the difference is",
+        "</div>",
+        "<figcaption>",
+        "<h2>Norms of the difference</h2>",
+    )
     places = [report.read_text().index(part) for part in parts]
     assert places == sorted(places)
     assert report.read_text().count("<figcaption>") == 2
