@@ -32,7 +32,7 @@ CENTRAL_LONGITUDE = np.radians(270.0)
 LAND = "0.8"
 """Colour of land, the grey that no usual colour map has."""
 
-HALO = (withStroke(linewidth=1.5, foreground="white", alpha=0.7),)
+HALO = (withStroke(linewidth=2.0, foreground="white", alpha=0.85),)
 """Round labels that stand on a map, whose colours may be dark."""
 
 VIEW_LATITUDE = np.radians(40.0)
