@@ -61,11 +61,11 @@ def write_comparison_report(
     """Write the report of a comparison, with its `verdict` and the `maps` drawn of it, to `folder`; return its path."""
     rows = comparison_rows(comparison)
     compared = [row for row in rows if _has_norms(row)]
-    day, noun = comparison.days[-1], _wording(comparison).noun
+    day, word = comparison.days[-1], _wording(comparison)
     sections = {
-        f"Norms of the {noun}": table_of(compared, NORM_COLUMNS),
-        f"Where the {noun} of thickness lies on day {day:g}: shares of its square and of the area": table_of(
-            [row for row in compared if row["day"] == day], KEYS | share_columns(noun)
+        f"Norms of the {word.noun}": table_of(compared, NORM_COLUMNS),
+        f"Where the {word.one} thickness lies on day {day:g}: shares of its square and of the area": table_of(
+            [row for row in compared if row["day"] == day], KEYS | share_columns(word.noun)
         ),
         "Changes since the start": table_of(rows, CONSERVATION_COLUMNS),
     }

@@ -2,6 +2,7 @@
 
 from postprocess.reports.time_verdict import time_verdict
 from postprocess.studies.study_folder import StudyRow
+from postprocess.studies.time_study import time_figure
 
 
 def rows_of(drift: float = 1e-9, scheme: str = "ringler2010", order: int = 5) -> list[StudyRow]:
@@ -64,3 +65,8 @@ def test_all_runs_failed() -> None:
         verdict["Which order"][0]
         == "Of the drift of total energy there are too few values above round-off (0) to tell an order."
     )
+
+
+def test_the_figure_names_the_steps() -> None:
+    axes = time_figure(rows_of(), "Heading").axes[0]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["150", "300", "600"]
