@@ -51,7 +51,7 @@ def mesh_verdict(rows: Sequence[StudyRow], accepted_order: float | None = None) 
         "Which mesh is best": [*failed, *best_mesh(last)],
         "Which order": [*orders_in_words(lines, accepted_order), *stalling(lines)],
         "Where the error lives": [where_in_words(name, row) for name, row in last.items() if has_shares(row)],
-        "What it costs": costs(lines),
+        "What it costs": [*costs(lines), *([SAME_WORK] if len(schemes_of(rows)) > 1 else [])],
     } | conserved
 
 
@@ -161,7 +161,8 @@ def costs(lines: Lines) -> list[str]:
     return [*found, COUNTED]
 
 
-COUNTED = "Cost is cells times steps, whatever the machine; the work in a step of either scheme counts the same."
+COUNTED = "Cost is cells times steps, whatever the machine."
+SAME_WORK = "The work in a step of either scheme counts the same."
 
 
 def cost_of_error(line: Sequence[StudyRow], error: float) -> float | None:

@@ -120,6 +120,12 @@ def test_cost_of_an_error_is_read_between_sizes() -> None:
         "An l2 error of thickness of 0.001 is one that every line reaches.",
         "It costs 5.12e+05 cells times steps with scvt; bisection 8.0 times as much.",
     ]
+    consistent = [row | {"scheme": "consistent"} for row in bisection]
+    told = [mesh_verdict(rows)["What it costs"] for rows in ([*scvt, *bisection], [*scvt, *consistent])]
+    assert [sentences[-1] for sentences in told] == [
+        "Cost is cells times steps, whatever the machine.",
+        "The work in a step of either scheme counts the same.",
+    ]
     below = costs({"scvt": rows_of("scvt", 1e-4, 2.0), "bisection": bisection})
     assert below[2] == "Even the coarsest mesh of scvt is below it."
 
