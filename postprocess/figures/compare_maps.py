@@ -24,6 +24,9 @@ from postprocess.runs.folders import prepared_folder
 ROWS, COLUMNS = 360, 720
 """Pixels of the maps."""
 
+WIDTH, WIDTH_OF_ONE = 9.6, 6.6
+"""Inches of figures with two maps beside each other, and with one: letters are then legible on a page of the former."""
+
 
 @dataclass(frozen=True)
 class MapField:
@@ -73,12 +76,17 @@ def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
         heading = f"{field.title}: {comparison.case}, day {day:g}"
         panels = [each[name] / field.unit for each in values]
         figure = map_figure(panels, names, heading, field.label, colours_for(field.colours, panels))
-        paths.append(_save(figure, folder, f"compare_{name}_day{day:g}"))
+        paths.append(_save(figure, folder, name_of_map(name, day)))
         panels = [each[name] / field.unit for each in differences]
         heading += f"\ndifference from the reference, {reference.name}"
         figure = map_figure(panels, names[1:], heading, field.difference_label, _colours_of_errors(field, panels))
-        paths.append(_save(figure, folder, f"compare_{name}_difference_day{day:g}"))
+        paths.append(_save(figure, folder, name_of_map(name, day, difference=True)))
     return paths
+
+
+def name_of_map(field: str, day: float, difference: bool = False) -> str:
+    """Name of the file, without its ending, of the maps of a field of `MAP_FIELDS` or of its difference."""
+    return f"compare_{field}{'_difference' if difference else ''}_day{day:g}"
 
 
 def _save(figure: Figure, folder: Path, name: str) -> Path:
@@ -111,7 +119,8 @@ def map_figure(panels: list[Array], titles: list[str], heading: str, label: str,
     """One map for each of `panels` with one colour scale; up to two maps beside each other."""
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
-    figure = Figure(figsize=(6.6 * columns, 3.5 * rows + 1.0), layout="constrained")
+    width = WIDTH if columns > 1 else WIDTH_OF_ONE
+    figure = Figure(figsize=(width, 0.53 * width / columns * rows + 1.0), layout="constrained")
     grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axes, title, values in zip(grid, titles, panels, strict=False):
         drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), colours.options).images[-1]

@@ -9,6 +9,7 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection
 from matplotlib.patches import Circle, Ellipse, Patch
+from matplotlib.patheffects import withStroke
 
 from mesh.arrays import Array
 from mesh.discrete.walls import has_walls
@@ -30,6 +31,9 @@ CENTRAL_LONGITUDE = np.radians(270.0)
 
 LAND = "0.8"
 """Colour of land, the grey that no usual colour map has."""
+
+HALO = (withStroke(linewidth=2.0, foreground="white", alpha=0.85),)
+"""Round labels that stand on a map, whose colours may be dark."""
 
 VIEW_LATITUDE = np.radians(40.0)
 """Latitude under the viewer of orthographic maps, unless another is asked for."""
@@ -69,11 +73,12 @@ def _draw_mollweide_graticule(axes: Axes, central_longitude: float) -> None:
         axes.plot(*line.T, color="black", linewidth=0.3, alpha=0.4)
     for degrees in (-60, -30, 0, 30, 60):
         x, y = mollweide(np.array(-np.pi), np.array(np.radians(degrees)))
-        axes.text(x - 0.05, y, latitude_label(degrees), ha="right", va="center", fontsize=7)
+        away = 0.05 + 0.03 * (degrees / 30.0) ** 2  # the rim leans over labels that are far from the equator
+        axes.text(x - away, y, latitude_label(degrees), ha="right", va="center", fontsize=7)
     for degrees in (-120, -60, 0, 60, 120):
         x, _ = mollweide(np.array(np.radians(degrees)), np.array(0.0))
         east = whole_degrees_east(float(np.radians(degrees)) + central_longitude)
-        axes.text(x, 0.03, f"{east}°E", ha="center", va="bottom", fontsize=6, alpha=0.7)
+        axes.text(x, 0.03, f"{east}°E", ha="center", va="bottom", fontsize=6, path_effects=HALO)
     axes.set_xlim(-3.2, 2.9)
     axes.set_ylim(-1.48, 1.48)
 

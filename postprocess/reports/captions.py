@@ -1,5 +1,7 @@
-"""Captions of the figures of studies: what is seen, the axes and their units."""
+"""Captions of the figures of studies and comparisons: what is seen, the axes and their units."""
 
+from postprocess.figures.compare_maps import MAP_FIELDS, name_of_map
+from postprocess.figures.plots import ROUND_OFF_FLOOR
 from postprocess.studies.study_maps import CLOSEUP_CELLS, COLOUR_RANGE
 
 GUIDES = "Both axes are logarithmic; grey lines show how errors of first and second order fall."
@@ -37,7 +39,7 @@ def mesh_captions(error_day: float, compared: int) -> dict[str, str]:
         ),
         "conservation": (
             "Size of the relative change of each invariant since the start, without units and logarithmic, against "
-            "time, in days, on the finest meshes."
+            f"time, in days, on the finest meshes. No change at all is drawn at {ROUND_OFF_FLOOR:g}."
         ),
     }
 
@@ -51,3 +53,20 @@ def time_captions(shortest: float) -> dict[str, str]:
             "that theory expects."
         )
     }
+
+
+def comparison_captions(day: float, compared: int) -> dict[str, str]:
+    """Captions of the maps of a comparison on this day, of so many runs, by the names of their files."""
+    runs = "the run" if compared == 1 else f"the {compared} runs"
+    scale = "On an equal-area map" if compared == 1 else "On equal-area maps with one colour scale"
+    captions = {}
+    for name, field in MAP_FIELDS.items():
+        captions[name_of_map(name, day)] = (
+            f"On equal-area maps with one colour scale: {field.label} on day {day:g}, of the reference first and then "
+            f"of {runs}."
+        )
+        sign = "" if field.error_colours else ": red where the run has more than the reference, blue where it has less"
+        captions[name_of_map(name, day, difference=True)] = (
+            f"{scale}: {field.difference_label} from the reference on day {day:g}, of {runs}{sign}."
+        )
+    return captions

@@ -5,12 +5,14 @@ from itertools import pairwise
 
 import numpy as np
 
+from postprocess.reports.ranking import ranking, uncertainty_of
 from postprocess.reports.sentences import (
     ROUND_OFF,
     Verdict,
     are_equal,
     compared_with_theory,
     counted,
+    has_shares,
     listed,
     number,
     order_in_words,
@@ -30,18 +32,12 @@ ORDER_TOLERANCE = 0.25
 STALLING = 1.0
 """The largest error stalls where its order is less than that of the l2 norm by this much."""
 
-OTHER_ERRORS = {
-    "thickness_linf": "the largest error of thickness",
-    "normal_velocity_l2": "the error of normal velocity",
-    "vorticity_l2": "the error of vorticity",
-}
-
 Lines = dict[str, list[StudyRow]]
 """Rows with errors by what their family and scheme are called, coarse meshes first."""
 
 
 def mesh_verdict(rows: Sequence[StudyRow], accepted_order: float | None = None) -> Verdict:
-    """What a study of meshes found, by question; `accepted_order` is the least that its case asks for."""
+    """What a study of meshes found, by question; `accepted_order` is the least of its case, if it has any."""
     failed = _failures(rows)
     conserved = {"What is conserved": _conserved(rows)}
     lines = compared_lines(rows)
@@ -54,8 +50,8 @@ def mesh_verdict(rows: Sequence[StudyRow], accepted_order: float | None = None) 
     return {
         "Which mesh is best": [*failed, *best_mesh(last)],
         "Which order": [*orders_in_words(lines, accepted_order), *stalling(lines)],
-        "Where the error lives": [where_in_words(name, row) for name, row in last.items() if _has_shares(row)],
-        "What it costs": costs(lines),
+        "Where the error lives": [where_in_words(name, row) for name, row in last.items() if has_shares(row)],
+        "What it costs": [*costs(lines), *([SAME_WORK] if len(schemes_of(rows)) > 1 else [])],
     } | conserved
 
 
@@ -78,74 +74,17 @@ def finest_rows(lines: Lines) -> dict[str, StudyRow]:
 def best_mesh(rows: dict[str, StudyRow]) -> list[str]:
     """Which line has the smallest errors, by what factor, and whether other errors agree; rows are of one size."""
     asked = next(iter(rows.values()))["requested_cells"]
-    name, row = min(rows.items(), key=lambda item: float(item[1]["thickness_l2"]))
     if len(rows) == 1:
+        name, row = next(iter(rows.items()))
         return [
             f"At {asked} cells there are results of {name} alone, so there is nothing to compare it with: its l2 error "
             f"of thickness is {number(row['thickness_l2'])}."
         ]
-    found = [_smallest(rows, asked)]
-    best = best_of(rows)
-    agreeing = [words for column, words in OTHER_ERRORS.items() if set(best) == set(_known_best(rows, column))]
-    if agreeing:
-        found.append(f"The same holds of {listed(agreeing)}.")
-    found += [_another(rows, column, words, best) for column, words in OTHER_ERRORS.items() if words not in agreeing]
+    found = ranking(rows, f"At {asked} cells")
     cells = sorted({int(each["cells"]) for each in rows.values()})
     if len(cells) > 1:
         found.append(f"These meshes have from {cells[0]} to {cells[-1]} cells, so weigh their costs too.")
-    return [sentence for sentence in found if sentence]
-
-
-def best_of(rows: dict[str, StudyRow], column: str = "thickness_l2") -> list[str]:
-    """Lines whose error is the smallest or equal to it, the smallest first."""
-    ranked = sorted(rows, key=lambda name: float(rows[name][column]))
-    least = rows[ranked[0]]
-    uncertainty = _uncertainty(least, column)
-    return [name for name in ranked if are_equal(rows[name][column], least[column], uncertainty)]
-
-
-def _uncertainty(row: StudyRow, column: str) -> float:
-    """Uncertainty of the reference that goes with an l2 error; zero where none is known."""
-    name = {"normal_velocity_l2": "velocity", "vorticity_l2": "vorticity", "thickness_l2": "thickness"}.get(column)
-    return float(row.get(f"uncertainty_{name}", 0.0))
-
-
-def _smallest(rows: dict[str, StudyRow], asked: int) -> str:
-    best = best_of(rows)
-    least = float(rows[best[0]]["thickness_l2"])
-    others = sorted((name for name in rows if name not in best), key=lambda name: float(rows[name]["thickness_l2"]))
-    ratios = [times(rows[name]["thickness_l2"] / least) for name in others]
-    if len(best) == 1:
-        start = f"At {asked} cells {best[0]} has the smallest l2 error of thickness, {number(least)}"
-    else:
-        uncertainty = _uncertainty(rows[best[0]], "thickness_l2")
-        within = f", or by less than the uncertainty of the reference, {number(uncertainty)}" if uncertainty else ""
-        whose = "the smallest ones, about" if others else "all about"
-        start = (
-            f"At {asked} cells the l2 errors of thickness of {listed(best)}, {whose} {number(least)}, are equal: "
-            f"they differ by less than 5%{within}"
-        )
-    ends = [f"that of {name} is {ratio} as large" for name, ratio in zip(others, ratios, strict=True)]
-    return f"{start}; {listed(ends)}." if ends else f"{start}."
-
-
-def _known_best(rows: dict[str, StudyRow], column: str) -> list[str]:
-    """The best by another error; empty where it is not known or zero."""
-    return best_of(rows, column) if all(row.get(column, 0.0) > 0.0 for row in rows.values()) else []
-
-
-def _another(rows: dict[str, StudyRow], column: str, words: str, best: Sequence[str]) -> str:
-    """Which lines are best by another error, others than by the l2 error of thickness; empty where it is not known."""
-    here = _known_best(rows, column)
-    if not here:
-        return ""
-    if len(here) > 1:
-        return f"By {words}, {listed(here)} are equal{'' if len(here) == len(rows) else ' and the smallest'}."
-    ratio = rows[best[0]][column] / rows[here[0]][column]
-    if here[0] in best:
-        second = min(float(row[column]) for name, row in rows.items() if name != here[0])
-        return f"By {words}, {here[0]} is best; the next is {times(second / rows[here[0]][column])} as large."
-    return f"By {words}, {here[0]} is best; that of {best[0]} is {times(ratio)} as large."
+    return found
 
 
 def orders_in_words(lines: Lines, accepted_order: float | None) -> list[str]:
@@ -165,17 +104,27 @@ def orders_in_words(lines: Lines, accepted_order: float | None) -> list[str]:
 def _order_of(name: str, line: Sequence[StudyRow], accepted_order: float | None) -> str:
     spacing, error = ([float(row[column]) for row in line] for column in ("spacing_km", "thickness_l2"))
     order = fitted_order(spacing, error)
-    told = f"The error of {name} has {order_in_words(spacing, error)}, "
-    told += compared_with_theory(order, EXPECTED_ORDER, ORDER_TOLERANCE, "second order")
-    if order < EXPECTED_ORDER - ORDER_TOLERANCE and accepted_order is not None and accepted_order <= order:
-        told += f", but not below the {accepted_order:g} that is accepted of this case"
+    told = f"The error of {name} has {order_in_words(spacing, error)}{_judged(order, accepted_order)}"
     rising = [(a["cells"], b["cells"]) for a, b in pairwise(line) if b["thickness_l2"] >= a["thickness_l2"]]
     if rising:
         told += f"; it does not fall {listed(f'from {a} to {b} cells' for a, b in rising)}"
-    uncertainty = _uncertainty(line[-1], "thickness_l2")
+    uncertainty = uncertainty_of(line[-1], "thickness_l2")
     if error[-1] < 2.0 * uncertainty:
         told += f"; the last is near the uncertainty of the reference, {number(uncertainty)}, so trust this order less"
     return f"{told}."
+
+
+def _judged(order: float, accepted_order: float | None) -> str:
+    """Whether an order is the one to expect; empty where the case does not say what to expect.
+
+    Theory holds of smooth flows; a case that accepts a lower order than it is not smooth, and is held to its own.
+    """
+    if accepted_order is None:
+        return ""
+    if accepted_order >= EXPECTED_ORDER - ORDER_TOLERANCE:
+        return f", {compared_with_theory(order, EXPECTED_ORDER, ORDER_TOLERANCE, 'second order')}"
+    side = "below" if order < accepted_order else "not below"
+    return f", {side} the {accepted_order:g} that is accepted of this case, which is not smooth enough for second order"
 
 
 def stalling(lines: Lines) -> list[str]:
@@ -212,7 +161,8 @@ def costs(lines: Lines) -> list[str]:
     return [*found, COUNTED]
 
 
-COUNTED = "Cost is cells times steps, whatever the machine; the work in a step of either scheme counts the same."
+COUNTED = "Cost is cells times steps, whatever the machine."
+SAME_WORK = "The work in a step of either scheme counts the same."
 
 
 def cost_of_error(line: Sequence[StudyRow], error: float) -> float | None:
@@ -270,7 +220,3 @@ def _failures(rows: Sequence[StudyRow]) -> list[str]:
     schemes = schemes_of(rows)
     where = listed(f"{spoken(row['family'], row['scheme'], schemes)} at {row['cells']} cells" for row in failed)
     return [f"{len(failed)} of {counted(len(rows), 'run', 'runs')} failed: {where}."]
-
-
-def _has_shares(row: StudyRow) -> bool:
-    return any(name.startswith("error_share_") for name in row)

@@ -74,13 +74,16 @@ def spoken(family: str, scheme: str, schemes: Iterable[str]) -> str:
     return f"{family} ({scheme})" if to_be_named(schemes) else family
 
 
-def order_in_words(size: Sequence[float], error: Sequence[float]) -> str:
-    """The fitted order of errors, none of them zero, over two or more sizes, and its spread, or that it has none."""
+def order_in_words(size: Sequence[float], error: Sequence[float], sizes: str = "sizes") -> str:
+    """The fitted order of errors, none of them zero, over two or more sizes, and its spread, or that it has none.
+
+    `sizes` says what they are, such as sizes of meshes or time steps.
+    """
     fitted = fitted_order(size, error)
     if len(size) == 2:
-        return f"order {fitted:.2f} (from two sizes alone, so its spread is not known)"
+        return f"order {fitted:.2f} (from two {sizes} alone, so its spread is not known)"
     steps = [fitted_order(two, of_two) for two, of_two in zip(pairwise(size), pairwise(error), strict=True)]
-    return f"order {fitted:.2f} ({min(steps):.2f} to {max(steps):.2f} between successive sizes)"
+    return f"order {fitted:.2f} ({min(steps):.2f} to {max(steps):.2f} between successive {sizes})"
 
 
 def compared_with_theory(order: float, expected: float, tolerance: float, what: str) -> str:
@@ -88,6 +91,11 @@ def compared_with_theory(order: float, expected: float, tolerance: float, what: 
     if abs(order - expected) <= tolerance:
         return f"the {what} that theory expects"
     return f"{'above' if order > expected else 'below'} the {what} that theory expects"
+
+
+def has_shares(row: StudyRow) -> bool:
+    """Whether a row tells where its error lives."""
+    return any(name.startswith("error_share_") for name in row)
 
 
 def where_in_words(name: str, row: StudyRow, error: str = "error") -> str:

@@ -4,10 +4,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mesh.discrete.quality import Quality
-from postprocess.compare.shares import ZONES
 from postprocess.reports.captions import mesh_captions, time_captions
 from postprocess.reports.mesh_verdict import mesh_verdict
-from postprocess.reports.sentences import zone_in_words
+from postprocess.reports.share_columns import share_columns
 from postprocess.reports.time_verdict import time_verdict
 from postprocess.studies.lines import lines_of
 from postprocess.studies.mesh_study import Member, Plan
@@ -32,17 +31,9 @@ ERROR_COLUMNS = {
     "uncertainty_thickness": "uncertainty of thickness",
     "worst_longitude": "worst cell: longitude (°)",
     "worst_latitude": "latitude (°)",
-    "worst_to_irregular": "cells away from the nearest that is no hexagon",
+    "worst_to_irregular": "worst cell: cells away from one that is no hexagon",
 }
-SHARE_COLUMNS = {
-    "family": "family",
-    "cells": "cells",
-    **{
-        f"{kind}_share_{zone}": f"{title}, {zone_in_words(zone)}"
-        for zone in ZONES
-        for kind, title in (("error", "squared error"), ("area", "area"))
-    },
-}
+SHARE_COLUMNS = {"family": "family", "cells": "cells", **share_columns("error")}
 QUALITY_COLUMNS = {"family": "family", **{name: name.replace("_", " ") for name in Quality.__dataclass_fields__}}
 TRUNCATION_COLUMNS = {
     "family": "family",

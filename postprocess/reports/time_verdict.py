@@ -23,10 +23,17 @@ ORDER_TOLERANCE = 0.4
 ENERGY = "total_energy_change_of_total"
 MEASURES = {
     ENERGY: ("the drift of total energy", ORDER_OF_ENERGY_DRIFT, "fifth order"),
-    "thickness_difference_l2": ("the difference in thickness", ORDER_OF_ENERGY_DRIFT - 1, "fourth order"),
-    "velocity_difference_l2": ("the difference in velocity", ORDER_OF_ENERGY_DRIFT - 1, "fourth order"),
+    "thickness_difference_l2": ("the difference in thickness from", ORDER_OF_ENERGY_DRIFT - 1, "fourth order"),
+    "velocity_difference_l2": ("the difference in velocity from", ORDER_OF_ENERGY_DRIFT - 1, "fourth order"),
 }
-"""What orders are told of: in words, the order that theory expects, and what it is called."""
+"""What orders are told of: in words, the order that theory expects, and what it is called.
+
+Differences are those from the run with the shortest step.
+"""
+
+
+ALL_RUNS = {1: "the one run", 2: "both runs"}
+"""All runs of a scheme in words, where there are few."""
 
 
 def time_verdict(rows: Sequence[StudyRow]) -> Verdict:
@@ -40,6 +47,8 @@ def time_verdict(rows: Sequence[StudyRow]) -> Verdict:
         finished = [row for row in line if "steps" in row]
         steps.append(_started(prefix, _longest(line, finished)))
         orders += [_started(prefix, _order(finished, name)) for name in MEASURES]
+        if any("thickness_difference_l2" in row for row in finished):
+            orders.append(_started(prefix, _own_error(finished)))
         gains.append(_started(prefix, _gain(finished)))
     verdict = {"Which time steps ran": steps, "Which order": orders, "What a longer step gains": gains}
     return verdict | ({"Which scheme drifts less": [_schemes(lines)]} if len(lines) > 1 else {})
@@ -52,7 +61,7 @@ def _started(prefix: str, sentence: str) -> str:
 
 def _longest(line: Sequence[StudyRow], finished: Sequence[StudyRow]) -> str:
     if not finished:
-        return f"{'the one run' if len(line) == 1 else f'all {len(line)} runs'} failed."
+        return f"{ALL_RUNS.get(len(line), f'all {len(line)} runs')} failed."
     last = finished[-1]
     told = (
         f"the longest step that ran to the end is {last['time_step_s']:g} s, of a largest Courant number of "
@@ -66,6 +75,8 @@ def _longest(line: Sequence[StudyRow], finished: Sequence[StudyRow]) -> str:
 
 def _order(finished: Sequence[StudyRow], name: str) -> str:
     what, expected, called = MEASURES[name]
+    if name != ENERGY:
+        what += f" the run with {finished[0]['time_step_s']:g} s" if finished else " the run with the shortest step"
     present = [(float(row["time_step_s"]), abs(float(row[name]))) for row in finished if name in row]
     usable = [(step, value) for step, value in present if value > ROUND_OFF]
     if present and not usable:
@@ -76,7 +87,21 @@ def _order(finished: Sequence[StudyRow], name: str) -> str:
     left_out = len(present) - len(usable)
     aside = f" ({counted(left_out, 'value', 'values')} at round-off left out)" if left_out else ""
     judged = compared_with_theory(fitted_order(steps, values), expected, ORDER_TOLERANCE, called)
-    return f"{what} has {order_in_words(steps, values)}, {judged}{aside}."
+    return f"{what} has {order_in_words(steps, values, 'steps')}, {judged}{aside}."
+
+
+def _own_error(finished: Sequence[StudyRow]) -> str:
+    """By how much the orders of differences are too high, as the run with the shortest step has an error too.
+
+    An error h^p gives differences h^p - s^p from the shortest step s: of the two shortest after s this tells the most.
+    """
+    shortest, *others = (float(row["time_step_s"]) for row in finished)
+    told = f"the run with {shortest:g} s has an error of its own, so orders of differences from it come out too high"
+    if len(others) < 2:
+        return f"{told}."
+    order = ORDER_OF_ENERGY_DRIFT - 1
+    differences = [step**order - shortest**order for step in others]
+    return f"{told}, by {fitted_order(others, differences) - order:.2f} where they are {order}."
 
 
 def _gain(finished: Sequence[StudyRow]) -> str:

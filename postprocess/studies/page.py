@@ -23,7 +23,8 @@ body { font-family: sans-serif; max-width: 75em; margin: 2em auto; padding: 0 1e
 h1, h2, p, li, figcaption, code { overflow-wrap: anywhere; }
 .verdict { border-left: .3em solid #4878a8; padding: .1em 1.2em; background: #f3f6fa; }
 .verdict h3 { margin: .8em 0 .2em; font-size: 105%; }
-.verdict p { margin: .2em 0 .8em; }
+.verdict p { margin: .2em 0 .3em; }
+.verdict { padding-bottom: .6em; }
 figure { margin: 2em 0; }
 figcaption { margin-top: .4em; color: #444; }
 table { border-collapse: collapse; margin: 1em 0; font-size: 85%; }
@@ -153,7 +154,7 @@ def write_pictures(
 def _findings(verdict: Mapping[str, Sequence[str]]) -> list[str]:
     """The verdict in a frame; nothing if there is none."""
     found = [
-        f"<h3>{html.escape(question)}</h3>\n<p>{html.escape(' '.join(sentences))}</p>"
+        f"<h3>{html.escape(question)}</h3>\n{' '.join(f'<p>{html.escape(sentence)}</p>' for sentence in sentences)}"
         for question, sentences in verdict.items()
         if sentences
     ]
@@ -171,6 +172,14 @@ def _png(figure: Figure) -> bytes:
     full = io.BytesIO()
     figure.savefig(full, dpi=REPORT_DOTS_PER_INCH, format="png")
     return with_palette(full.getvalue())
+
+
+def at_page_size(image: bytes, dots_per_inch: float) -> bytes:
+    """A PNG of so many dots per inch with as many as the page has, in all its colours."""
+    full, small = Image.open(io.BytesIO(image)).convert("RGB"), io.BytesIO()
+    width, height = (round(length * REPORT_DOTS_PER_INCH / dots_per_inch) for length in full.size)
+    full.resize((width, height), Image.Resampling.LANCZOS).save(small, format="PNG", optimize=True)
+    return small.getvalue()
 
 
 def with_palette(image: bytes) -> bytes:

@@ -1,5 +1,6 @@
 """Maps of a study of meshes: where the error lives, on the globe and round the worst cell."""
 
+import textwrap
 from collections.abc import Sequence
 
 import numpy as np
@@ -25,6 +26,9 @@ COLOUR_RANGE = 4.0
 CLOSEUP_CELLS = 6.0
 """Close-ups reach this many cells from the worst one."""
 
+LETTERS_PER_INCH = 11.0
+"""Letters of a heading that fit in an inch."""
+
 MOST_DOTS = 400
 """Dots are left out if more cells than this are irregular: they would hide the map."""
 
@@ -37,7 +41,7 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     figure, panels = _panel_for_each(members, 2, (4.8, 3.3))
     for axes, member in panels:
         _colour_bar(figure, draw_error_map(axes, member, day, _name(member, members)))
-    figure.suptitle(heading)
+    figure.suptitle(_wrapped(heading, figure))
     return figure
 
 
@@ -57,7 +61,7 @@ def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figur
     figure, panels = _panel_for_each(members, 3, (3.2, 4.2))
     for axes, member in panels:
         _colour_bar(figure, draw_closeup(axes, member, day, _name(member, members)))
-    figure.suptitle(heading)
+    figure.suptitle(_wrapped(heading, figure))
     return figure
 
 
@@ -100,6 +104,11 @@ def _panel_for_each(
     for axes in grid[len(compared) :]:
         axes.axis("off")
     return figure, list(zip(grid, compared, strict=False))
+
+
+def _wrapped(heading: str, figure: Figure) -> str:
+    """A heading in lines that are not wider than the figure."""
+    return textwrap.fill(heading, int(LETTERS_PER_INCH * figure.get_figwidth()))
 
 
 def _colours(error: Array) -> dict:

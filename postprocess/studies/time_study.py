@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 from cases.base import Case
 from mesh.voronoi_mesh import VoronoiMesh
@@ -126,6 +127,9 @@ def time_figure(rows: Sequence[StudyRow], heading: str) -> Figure:
             axes.loglog(steps, values, label=f"{label}: order {fitted[name]:.2f}", **look)
             if number == 0 and len(steps) > 1:
                 _slope_guide(axes, steps, values, name, f"C{colour}")
+    every = sorted({float(row["time_step_s"]) for row in rows})
+    axes.set_xticks(every, [f"{step:g}" for step in every])
+    axes.xaxis.set_minor_formatter(NullFormatter())
     axes.set_xlabel("time step (s)")
     axes.set_ylabel("relative change or error")
     axes.grid(alpha=0.3, which="both")

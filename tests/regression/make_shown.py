@@ -34,7 +34,7 @@ from postprocess.compare.comparison import compare_runs, comparison_record
 from postprocess.figures.compare_maps import write_maps
 from postprocess.figures.plots import plot_run
 from postprocess.figures.spectra_figure import write_spectra_of
-from postprocess.reports import study_report
+from postprocess.reports import compare_report, study_report
 from postprocess.runs.reading import read_run
 from postprocess.studies import page as pages
 from postprocess.studies.families import FAMILIES, Family
@@ -130,6 +130,9 @@ def _runs(found: Shown) -> None:
     found.found["comparison as a record"] = comparison_record(comparison)
     with found.printed("comparison"):
         comparison_table.print_comparison(comparison)
+    verdict = compare_report.verdict_of(comparison)
+    page = compare_report.write_comparison_report(comparison, verdict, [], Path("."), ["trisk", "compare"])
+    found.found["comparison: page"] = _page(page)
     with found.figures("spectra"):
         write_spectra_of(runs, (), "spectra")
     found.found["spectra as a table"] = Path("spectra/spectra.csv").read_text().splitlines()[:12]

@@ -38,6 +38,27 @@ def test_tables_and_maps(compare, runs: list[Path]) -> None:
     maps = sorted((runs[0] / "figures").glob("compare_*.png"))
     assert len(maps) == 2
     assert out.split()[-2:] == [str(path) for path in maps]
+    assert not list((runs[0] / "figures").glob("*.html"))
+    start = "On day 1 run162 has the smallest l2 error of thickness, "
+    assert start in out.split("reference: exact solution")[0]
+
+
+def test_the_folder_asked_for_gets_a_report(compare, runs: list[Path], tmp_path: Path) -> None:
+    code, out, err = compare(*runs, "--reference", runs[0], "--day", 0, "--day", 1, "-o", tmp_path / "of two")
+    assert (code, err) == (0, "")
+    report = tmp_path / "of two" / "report.html"
+    assert out.splitlines()[-1] == str(report)
+    parts = (
+        '<div class="verdict">',
+        "How large the difference is",
+        "</div>",
+        "<figcaption>",
+        "<h2>Norms of the difference</h2>",
+    )
+    places = [report.read_text().index(part) for part in parts]
+    assert places == sorted(places)
+    assert report.read_text().count("<figcaption>") == 2
+    assert "squared difference in thickness of run162" in report.read_text()
 
 
 def test_json(compare, runs: list[Path], tmp_path: Path) -> None:
@@ -52,6 +73,8 @@ def test_json(compare, runs: list[Path], tmp_path: Path) -> None:
     assert second["norms"]["thickness"]["l2"] > 0
     assert abs(second["conservation"]["mass_change"]) < 1e-13
     assert all(Path(path).parent == tmp_path / "maps" and Path(path).exists() for path in record["maps"])
+    assert (tmp_path / "maps" / "report.html").exists()
+    assert len(record["maps"]) == 2
 
 
 def test_bad_input_is_one_sentence_and_code_2(compare, runs: list[Path], tmp_path: Path) -> None:

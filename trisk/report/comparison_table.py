@@ -1,9 +1,11 @@
-"""What `trisk compare` prints: error norms and conservation."""
+"""What `trisk compare` prints: what was found, error norms and conservation."""
 
+import typer
 from rich.console import Console
 from rich.table import Table
 
 from postprocess.compare.comparison import SHOWN_DIAGNOSTICS, Comparison, in_scientific_notation
+from postprocess.reports.sentences import Verdict
 
 FIELD_LABELS = {
     "thickness": "thickness",
@@ -11,6 +13,13 @@ FIELD_LABELS = {
     "normal_velocity": "normal velocity",
     "vorticity": "vorticity",
 }
+
+
+def print_verdict(verdict: Verdict) -> None:
+    """Print what was found, a sentence a line; a narrow terminal wraps them."""
+    for sentences in verdict.values():
+        for sentence in sentences:
+            typer.echo(sentence)
 
 
 def print_comparison(comparison: Comparison) -> None:

@@ -1,13 +1,15 @@
 """The page of a report: findings first, tables last, and nothing wider than it."""
 
+import io
 import shutil
 from pathlib import Path
 
 import pytest
 from matplotlib.figure import Figure
+from PIL import Image
 
 from postprocess.reports.study_report import SHARE_COLUMNS
-from postprocess.studies.page import table_of, write_page
+from postprocess.studies.page import at_page_size, table_of, write_page
 from postprocess.studies.study_folder import StudyRow
 
 
@@ -25,7 +27,13 @@ def page(tmp_path: Path) -> Path:
 
 def test_findings_come_first_and_tables_last(page: Path) -> None:
     text = page.read_text()
-    parts = ["<p>This &lt;one&gt;. By far.</p>", "<p>text</p>", "<img", "<figcaption>What is seen.", "<h2>Shares"]
+    parts = [
+        "<p>This &lt;one&gt;.</p> <p>By far.</p>",
+        "<p>text</p>",
+        "<img",
+        "<figcaption>What is seen.",
+        "<h2>Shares",
+    ]
     places = [text.index(part) for part in parts]
     assert places == sorted(places)
     assert "Unanswered" not in text
@@ -51,3 +59,9 @@ def test_nothing_is_wider_than_the_page(page: Path) -> None:
         assert window.evaluate("document.scrollingElement.scrollWidth <= innerWidth")
         assert max(window.evaluate(wide)) <= 1000
         browser.close()
+
+
+def test_pictures_come_in_the_size_of_the_page() -> None:
+    picture = io.BytesIO()
+    Figure((9.6, 3.0)).savefig(picture, dpi=150)
+    assert Image.open(io.BytesIO(at_page_size(picture.getvalue(), 150))).size == (960, 300)

@@ -2,6 +2,7 @@
 
 from postprocess.reports.time_verdict import time_verdict
 from postprocess.studies.study_folder import StudyRow
+from postprocess.studies.time_study import time_figure
 
 
 def rows_of(drift: float = 1e-9, scheme: str = "ringler2010", order: int = 5) -> list[StudyRow]:
@@ -29,11 +30,13 @@ def test_orders_longest_step_and_gain() -> None:
             "with 1200 s."
         ],
         "Which order": [
-            "The drift of total energy has order 5.00 (5.00 to 5.00 between successive sizes), the fifth order that "
+            "The drift of total energy has order 5.00 (5.00 to 5.00 between successive steps), the fifth order that "
             "theory expects.",
-            "The difference in thickness has order 4.00 (from two sizes alone, so its spread is not known), the fourth "
-            "order that theory expects.",
-            "The difference in velocity is at round-off at every step, so it shows no order.",
+            "The difference in thickness from the run with 150 s has order 4.00 (from two steps alone, so its spread "
+            "is not known), the fourth order that theory expects.",
+            "The difference in velocity from the run with 150 s is at round-off at every step, so it shows no order.",
+            "The run with 150 s has an error of its own, so orders of differences from it come out too high, by 0.09 "
+            "where they are 4.",
         ],
         "What a longer step gains": [
             "The step of 600 s needs 0.25 times the steps of 150 s, and its thickness differs by 1.6e-05 (l2)."
@@ -54,9 +57,16 @@ def test_schemes_are_set_side_by_side() -> None:
 def test_all_runs_failed() -> None:
     rows = [{"time_step_s": step, "scheme": "ringler2010", "failure": "blown up"} for step in (600.0, 1200.0)]
     verdict = time_verdict(rows)
-    assert verdict["Which time steps ran"] == ["All 2 runs failed."]
+    assert verdict["Which time steps ran"] == ["Both runs failed."]
+    one, three = (time_verdict(rows_failed)["Which time steps ran"] for rows_failed in (rows[:1], [*rows, rows[0]]))
+    assert (one, three) == (["The one run failed."], ["All 3 runs failed."])
     assert verdict["What a longer step gains"] == ["Too few runs came to their end to compare steps."]
     assert (
         verdict["Which order"][0]
         == "Of the drift of total energy there are too few values above round-off (0) to tell an order."
     )
+
+
+def test_the_figure_names_the_steps() -> None:
+    axes = time_figure(rows_of(), "Heading").axes[0]
+    assert [label.get_text() for label in axes.get_xticklabels()] == ["150", "300", "600"]
