@@ -1,4 +1,4 @@
-"""A command added as `docs/architecture.md` says."""
+"""A command added as `docs/extending.md` says."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +13,7 @@ from tests.trisk.conftest import Call
 from trisk.cli.options import Quiet
 from trisk.main import COMMANDS, app_of
 
-PAGE = Path(__file__).parents[2] / "docs" / "architecture.md"
+PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
 
 
 def count(
