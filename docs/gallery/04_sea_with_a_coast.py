@@ -27,7 +27,7 @@ clipped = trisk.region_mesh(trisk.find_region("north-atlantic"), trisk.MeshReque
 figure, axes = plt.subplots(1, 2, figsize=(12, 5.5), layout="constrained")
 for ax, mesh, how in zip(axes, (culled, clipped), ("culled", "clipped"), strict=True):
     trisk.plot_field(
-        mesh, mesh.area_cell * 6371.0**2 / 1000.0, ax, centre=(-45, 38), extent=75, label="area (1000 km²)"
+        mesh, mesh.area_cell * 6371.0**2 / 1000.0, ax, centre=(-50, 35), extent=(90, 80), label="area (1000 km²)"
     )
     ax.set_title(f"{how}: {mesh.n_cells} cells")
 
@@ -42,6 +42,6 @@ simulation.run(days=60)
 run = trisk.open_run(Path(folder.name) / "gyres")
 
 figure, axes = plt.subplots(1, 2, figsize=(12, 5.5), layout="constrained")
-for ax, field in zip(axes, ("thickness", "relative_vorticity"), strict=True):
-    trisk.plot_field(run, field, ax, centre=(-45, 38), extent=75)
+for ax, field in zip(axes, ("thickness", "kinetic_energy"), strict=True):
+    trisk.plot_field(run, field, ax, centre=(-50, 35), extent=(90, 80))
     ax.set_title(f"day {run.days[-1]:g}")

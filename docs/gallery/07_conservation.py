@@ -18,7 +18,7 @@ mesh, case = trisk.scvt_mesh(2562), trisk.Williamson5()
 
 # %%
 # The equations in space keep mass, absolute vorticity and total energy; only the steps in time lose energy. ``rk4``, the
-# default, loses little, ``rrk4`` none beyond round-off, and ``apvm`` damps potential enstrophy at no cost in energy.
+# default, loses little, ``rrk4`` none beyond round-off, and anticipation damps potential enstrophy at no cost in energy.
 
 OPTIONS = {
     "rk4": {},

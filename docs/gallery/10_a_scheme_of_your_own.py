@@ -3,7 +3,7 @@ A scheme of your own
 ====================
 
 A scheme is a kinetic energy and the flux that goes with it. Any such pair keeps the total energy; a pair that does not
-match loses it.
+match does not.
 """
 
 import matplotlib.pyplot as plt

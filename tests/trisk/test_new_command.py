@@ -55,12 +55,12 @@ def test_its_errors_are_a_line_and_an_exit_code(trisk: Call, monkeypatch: pytest
 
 def test_commands_are_where_the_page_says() -> None:
     page = " ".join(PAGE.read_text().split())
-    places = ("`trisk/cli/NAME.py`", "`trisk/mesh_cli`", "`trisk.cli.options`", "`trisk/report`")
+    places = ("`trisk/cli/NAME.py`", "`trisk/mesh_cli`", "`trisk/results_cli`", "`trisk.cli.options`", "`trisk/report`")
     for words in (*places, "`COMMANDS` of `trisk.main`"):
         assert words in page
     for command in COMMANDS:
-        assert command.__module__ in (f"trisk.{room}.{command.__name__}" for room in ("cli", "mesh_cli"))
+        assert command.__module__ in (f"trisk.{room}.{command.__name__}" for room in ("cli", "mesh_cli", "results_cli"))
         assert command.__doc__
-    folders = [Path(trisk.main.__file__).with_name(room) for room in ("cli", "mesh_cli")]
+    folders = [Path(trisk.main.__file__).with_name(room) for room in ("cli", "mesh_cli", "results_cli")]
     modules = {path.stem for folder in folders for path in folder.glob("*.py")}
     assert modules == {"__init__", "options", "study", *(command.__name__ for command in COMMANDS)}
