@@ -20,7 +20,8 @@ extensions = [
     "sphinx_design",
     "sphinx_gallery.gen_gallery",
 ]
-exclude_patterns = ["_build", "gallery", "tools", "templates"]
+exclude_patterns = ["_build", "gallery", "tools", "templates", "sg_execution_times.rst"]
+suppress_warnings = ["toc.empty_glob"]  # the guide takes pages that it does not name, where there are any
 templates_path = ["templates"]
 
 myst_enable_extensions = ["colon_fence", "dollarmath"]
@@ -65,7 +66,7 @@ def setup(app: Sphinx) -> None:
     def open_equation(translator: Any, node: nodes.math | nodes.math_block) -> None:
         block = isinstance(node, nodes.math_block)
         equation = converter.convert_with_local_state(node.astext(), displaystyle=block)
-        translator.body.append(f'<div class="math">{equation}</div>' if block else equation)
+        translator.body.append(f'<div class="equation">{equation}</div>' if block else equation)
         raise nodes.SkipNode
 
     app.add_html_math_renderer("mathml", (open_equation, None), (open_equation, None))

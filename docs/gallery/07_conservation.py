@@ -17,8 +17,9 @@ folder = TemporaryDirectory()
 mesh, case = trisk.scvt_mesh(2562), trisk.Williamson5()
 
 # %%
-# The equations in space keep mass, absolute vorticity and total energy; only the steps in time lose energy. ``rk4``, the
-# default, loses little, ``rrk4`` none beyond round-off, and anticipation damps potential enstrophy at no cost in energy.
+# The equations in space keep mass, absolute vorticity and total energy; only the steps in time lose energy. ``rk4``,
+# the default, loses little, ``rrk4`` none beyond round-off. Anticipation damps potential enstrophy, at no cost in
+# energy.
 
 OPTIONS = {
     "rk4": {},
