@@ -21,7 +21,6 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 exclude_patterns = ["_build", "gallery", "tools", "templates", "sg_execution_times.rst"]
-suppress_warnings = ["toc.empty_glob"]  # the guide takes pages that it does not name, where there are any
 templates_path = ["templates"]
 
 myst_enable_extensions = ["colon_fence", "dollarmath"]
