@@ -58,15 +58,15 @@ html_theme_options = {
 }
 
 
-def begin_with_empty_line(_app: Sphinx, what: str, _name: str, _obj: object, _options: Any, lines: list[str]) -> None:
+def begin_with_a_comment(_app: Sphinx, what: str, _name: str, _obj: object, _options: Any, lines: list[str]) -> None:
     """Keep napoleon from taking what stands before a colon in the first line of an attribute for its type."""
     if what in ("attribute", "property"):
-        lines.insert(0, "")
+        lines[:0] = ["..", ""]
 
 
 def setup(app: Sphinx) -> None:
     """Let equations be MathML, which browsers draw themselves: no script, and no network to fetch one from."""
-    app.connect("autodoc-process-docstring", begin_with_empty_line, priority=1)
+    app.connect("autodoc-process-docstring", begin_with_a_comment, priority=1)
     converter = LatexToMathML()
 
     def open_equation(translator: Any, node: nodes.math | nodes.math_block) -> None:
