@@ -39,9 +39,8 @@ sphinx_gallery_conf = {
     "gallery_dirs": "examples",
     "filename_pattern": r"\.py$",
     "within_subsection_order": "FileNameSortKey",
-    "abort_on_example_error": False,
+    "capture_repr": (),  # what is printed is shown, what a last line returns is not
     "show_signature": False,
-    "plot_gallery": True,
 }
 
 html_theme = "pydata_sphinx_theme"
