@@ -11,7 +11,7 @@ MUTANTS := 200
 SEED := 1
 
 .SECONDARY:
-.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling north-atlantic clean
+.PHONY: tc5 test test-all mutants lint format wheel-test verification reliability references mesh-page scaling north-atlantic docs clean
 
 tc5: $(VENV)/installed runs/mesh.$(CELLS).nc  ## Williamson test case 5 to day 50, with figures and a page for the browser
 	$(BIN)/trisk run williamson5 --mesh runs/mesh.$(CELLS).nc --days 50 --force -o $(RUN)
@@ -53,6 +53,10 @@ $(VENV)/installed: pyproject.toml
 
 $(VENV)/installed-dev: pyproject.toml $(VENV)/installed
 	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --editable '.[dev]'
+	touch $@
+
+$(VENV)/installed-docs: pyproject.toml $(VENV)/installed
+	PYTHONWARNINGS=ignore $(BIN)/python -m pip install --quiet --editable '.[docs]'
 	touch $@
 
 verification: $(VENV)/installed-dev $(GALEWSKY_CELLS:%=$(STUDY)/jet-%.done)  ## All of docs/verification.md; hours
@@ -97,5 +101,8 @@ mesh-page: $(VENV)/installed-dev  ## docs/meshes made anew; an hour
 scaling: $(VENV)/installed-dev  ## The tables and the figure of docs/scaling.md made anew; a quarter of an hour, 3 GB
 	$(BIN)/python docs/tools/scaling_page.py runs/scaling
 
+docs: $(VENV)/installed-docs  ## The documentation site in docs/_build/html, its gallery run; some minutes
+	$(BIN)/sphinx-build -W --keep-going --quiet docs docs/_build/html
+
 clean:
-	rm -rf $(VENV) build dist *.egg-info
+	rm -rf $(VENV) build dist *.egg-info docs/_build docs/api/names docs/examples

@@ -24,9 +24,9 @@ class LinearDrag(Forcing):
 
 
 class QuadraticDrag(Forcing):
-    """Drag of a rough bottom, du/dt = -C |u| u / h, with C, the `drag_coefficient`, without units.
+    """Drag of a rough bottom, du/dt = -C abs(u) u / h, with C, the `drag_coefficient`, without units.
 
-    The speed at an edge is that of the kinetic energy of its two cells, |u|^2 = K_1 + K_2, with K of Ringler et al.
+    The speed at an edge is that of the kinetic energy of its two cells, abs(u)^2 = K_1 + K_2, with K of Ringler et al.
     (2010) whatever the scheme. Raises `InputError` where the coefficient is negative.
     """
 

@@ -1,4 +1,4 @@
-"""A case is added as `docs/architecture.md` says: a dataclass in a file, which runs as any other."""
+"""A case is added as `docs/extending.md` says: a dataclass in a file, which runs as any other."""
 
 import os
 import subprocess

@@ -1,4 +1,4 @@
-"""A command added as `docs/architecture.md` says."""
+"""A command added as `docs/extending.md` says."""
 
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +13,7 @@ from tests.trisk.conftest import Call
 from trisk.cli.options import Quiet
 from trisk.main import COMMANDS, app_of
 
-PAGE = Path(__file__).parents[2] / "docs" / "architecture.md"
+PAGE = Path(__file__).parents[2] / "docs" / "extending.md"
 
 
 def count(
@@ -55,12 +55,12 @@ def test_its_errors_are_a_line_and_an_exit_code(trisk: Call, monkeypatch: pytest
 
 def test_commands_are_where_the_page_says() -> None:
     page = " ".join(PAGE.read_text().split())
-    places = ("`trisk/cli/NAME.py`", "`trisk/mesh_cli`", "`trisk.cli.options`", "`trisk/report`")
+    places = ("`trisk/cli/NAME.py`", "`trisk/mesh_cli`", "`trisk/results_cli`", "`trisk.cli.options`", "`trisk/report`")
     for words in (*places, "`COMMANDS` of `trisk.main`"):
         assert words in page
     for command in COMMANDS:
-        assert command.__module__ in (f"trisk.{room}.{command.__name__}" for room in ("cli", "mesh_cli"))
+        assert command.__module__ in (f"trisk.{room}.{command.__name__}" for room in ("cli", "mesh_cli", "results_cli"))
         assert command.__doc__
-    folders = [Path(trisk.main.__file__).with_name(room) for room in ("cli", "mesh_cli")]
+    folders = [Path(trisk.main.__file__).with_name(room) for room in ("cli", "mesh_cli", "results_cli")]
     modules = {path.stem for folder in folders for path in folder.glob("*.py")}
     assert modules == {"__init__", "options", "study", *(command.__name__ for command in COMMANDS)}

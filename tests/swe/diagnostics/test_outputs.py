@@ -100,7 +100,7 @@ def test_fields_that_are_none() -> None:
 def test_a_field_is_added_by_one_entry(
     small_mesh: VoronoiMesh, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """As docs/architecture.md says: an entry of the table, and history and readers have it."""
+    """As docs/extending.md says: an entry of the table, and history and readers have it."""
     head = Field("nCells", "m", "height of the free surface and of the kinetic energy", lambda now: _head(now))
 
     def _head(now: object) -> np.ndarray:
