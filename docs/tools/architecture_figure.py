@@ -62,7 +62,9 @@ THICKNESS: tuple[Room, ...] = (
     ("postprocess", "runs"),
     ("postprocess", "figures"),
 )
-WIDTH, HEIGHT, GAP = 1.6, 0.55, 0.35
+WIDTH, HEIGHT, GAP = 2.1, 0.55, 0.35
+BESIDE = 0.22
+"""Distance of numbers from the box, so that they cover no letters."""
 
 
 def center(room: Room) -> tuple[float, float]:
@@ -88,14 +90,13 @@ def draw_path(axes: Axes, path: Sequence[Room], colour: str, side: int) -> None:
     for station, room in enumerate(path, 1):
         x, y = center(room)
         badge = {"boxstyle": "circle,pad=0.3", "facecolor": colour, "edgecolor": "none"}
-        axes.text(
-            x + side * WIDTH / 2, y, str(station), color="white", fontsize=9, ha="center", va="center", bbox=badge
-        )
+        beside = x + side * (WIDTH / 2 + BESIDE)
+        axes.text(beside, y, str(station), color="white", fontsize=9, ha="center", va="center", bbox=badge)
 
 
 def architecture_figure() -> Figure:
     """All rooms, each above those that it may import, and the stations of the two paths through them."""
-    figure = Figure(figsize=(11.0, 6.2), layout="constrained")
+    figure = Figure(figsize=(11.0, 8.0), layout="constrained")
     axes = figure.subplots()
     for package, rooms in ROOMS.items():
         for name in rooms or ("",):
@@ -107,7 +108,7 @@ def architecture_figure() -> Figure:
     for number, (text, colour) in enumerate(
         (("points, from their start to a file", "#c8641e"), ("thickness, from the case to a picture", "#1f5fa8"))
     ):
-        axes.text(3.6 * (WIDTH + 2 * GAP), 8.0 - 0.4 * number, text, color=colour, ha="center", fontsize=10)
+        axes.text(1.55 * (WIDTH + 2 * GAP), 9.9 - 0.45 * number, text, color=colour, ha="center", fontsize=10)
     axes.set_xlim(-1.6, 4 * (WIDTH + 2.0 * GAP) + 1.1)
     axes.set_ylim(-1.1, (max(map(len, ROOMS.values())) - 1) * (HEIGHT + GAP) + 0.6)
     axes.set_aspect("equal")
