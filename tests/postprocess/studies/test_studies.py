@@ -149,9 +149,9 @@ def test_charts_of_meshes_show_the_rows_of_the_table(study: tuple) -> None:
     rows = study[1]
     truncation = truncation_figure(rows, "Heading")
     names = ("gradient", "divergence", "curl", "perp", "kinetic energy")
-    titles = [f"{name}, {norm}" for norm in ("l2", "l∞") for name in names]
+    titles = [f"{name}, {norm}" for name in names for norm in ("l2", "l∞")]
     assert [axes.get_title() for axes in truncation.axes] == titles
-    bisection, scvt, *slopes = truncation.axes[1].get_lines()
+    bisection, scvt, *slopes = truncation.axes[2].get_lines()
     for line, ours in ((bisection, rows[0::2]), (scvt, rows[1::2])):
         np.testing.assert_array_equal(line.get_xdata(), [row["spacing_km"] for row in ours])
         np.testing.assert_array_equal(line.get_ydata(), [row["truncation_divergence_l2"] for row in ours])
