@@ -1,5 +1,6 @@
 """From the description of a mesh and a region to a mesh whose cells the coast of the region clips."""
 
+import math
 import time
 from dataclasses import dataclass, replace
 
@@ -11,13 +12,14 @@ from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.coast.sea_mesh import sea_mesh
 from mesh.coast.short_edges import without_short_edges
-from mesh.coast.start import fillers, sea_spacing, starting_points
+from mesh.coast.start import FEWEST_CELLS, fillers, sea_spacing, starting_points
 from mesh.density.named import Density, uniform
 from mesh.errors import MeshError
 from mesh.generation.optimizer import Callback, Limits, Optimizer
 from mesh.generation.scvt import VARIABLE_TOLERANCE, cells_of, check_converged, density_of, limits_of
 from mesh.geometry.sphere import fibonacci_points
 from mesh.mesh_request import MeshRequest
+from mesh.regions.coastline import LONGEST
 from mesh.regions.region import Region
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -95,8 +97,17 @@ def spacing_before_coastline(region: Region, cells: int) -> float:
 
 
 def coast_smoothing(region: Region, cells: int) -> float:
-    """Width (radians) to which the coast of a region is smoothed for a mesh of so many cells."""
-    return COAST_SPACINGS * spacing_before_coastline(region, cells)
+    """Width (radians) to which the coast of a region is smoothed for a mesh of so many cells.
+
+    Raises `MeshError` where these are too few for any coast.
+    """
+    if cells < FEWEST_CELLS:
+        raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {FEWEST_CELLS}")
+    smoothing = COAST_SPACINGS * spacing_before_coastline(region, cells)
+    if smoothing > LONGEST:
+        enough = math.ceil(cells * (smoothing / LONGEST) ** 2)
+        raise MeshError(f"{region.name}: {cells} cells are too few to follow its coast; ask for at least {enough}")
+    return smoothing
 
 
 def converge_at_sea(

@@ -95,6 +95,8 @@ def _box(
     projection: Projection | None,
 ) -> tuple[tuple[float, float], tuple[float, float], Projection]:
     """Centre, extent and projection of a `region`; raise `InputError` where there is no such region on a map."""
+    if np.shape(region) != (4,):
+        raise InputError(f"a map has no region {region}; give four numbers, west, east, south and north in degrees")
     west, east, south, north = region
     if centre != (0.0, 0.0) or extent is not None or projection not in (None, "cylindrical"):
         raise InputError(

@@ -54,6 +54,8 @@ def snapshot_field(run: Run, name: str, time: int) -> ShownField:
             file.set_auto_mask(False)
             names = [each for each, variable in file.variables.items() if _is_field(variable)]
             if name not in names:
+                # What most people look for comes first.
+                names.sort(key=lambda each: file[each].dimensions[0] != "Time")
                 return mesh_field(run.mesh, name, names)
             variable = file[name]
             values = np.asarray(variable[time] if variable.dimensions[0] == "Time" else variable[:], dtype=float)

@@ -13,7 +13,7 @@ from mesh.arrays import Array, Index
 from mesh.safe_files import AnyPath, dataset
 from postprocess.figures.field_map import Projection, plot_field
 from postprocess.figures.palettes import colours_for
-from postprocess.figures.shown_fields import ShownField, snapshot_field
+from postprocess.figures.shown_fields import DIMENSIONS, ShownField, snapshot_field
 from postprocess.film.film_file import require_kind, write_film
 from postprocess.film.stencil import Pixels, Stencil, stencil_of
 from postprocess.runs.reading import DAY_TOLERANCE, Run, days_in_words
@@ -52,14 +52,15 @@ def film(
     width and height in pixels; `projection` and `centre` are those of `plot_field`. Colours run over all values of the
     field on these days. `progress` is called with the part that is done.
 
-    Raises `InputError` where there is no such field, map, kind of film or size, or fewer than two snapshots.
+    Raises `InputError` where there is no such field, map, kind of film or size, values are damaged, or there are fewer
+    than two snapshots.
     """
     path = Path(path)
     _require_size(size)
     require_kind(path, size)
     rows = _rows(run, days)
-    shown = snapshot_field(run, field, int(rows[0]))
     _require_in_time(run, field)
+    shown = snapshot_field(run, field, int(rows[0]))
     colours = ScalarMappable(**colours_for(field, _extremes(run, field, rows, progress)).options)
     stencil = _stencil(run, shown, colours, size, projection, centre)
     frames = _frames(run, field, rows, stencil, colours, progress)
@@ -80,31 +81,30 @@ def _rows(run: Run, days: tuple[float, float] | None) -> Index:
     rows = np.flatnonzero((run.days >= first - DAY_TOLERANCE) & (run.days <= last + DAY_TOLERANCE))
     if len(rows) < 2:
         raise InputError(
-            f"{run.directory} has {len(rows)} snapshots from day {first:g} to day {last:g}, and a film needs two; its "
-            f"days are {days_in_words(run.days)}"
+            f"{run.directory} has {len(rows)} snapshot{'' if len(rows) == 1 else 's'} from day {first:g} to day "
+            f"{last:g}, and a film needs two; its days are {days_in_words(run.days)}"
         )
     return rows
 
 
 def _require_in_time(run: Run, field: str) -> None:
-    with dataset(run.directory / HISTORY_FILE) as file:
-        moving = field in file.variables and file[field].dimensions[0] == "Time"
-    if not moving:
-        raise InputError(f"{field} does not change in time; choose a field of the snapshots for a film")
-
-
-def _values(run: Run, field: str, row: int) -> Array:
-    with dataset(run.directory / HISTORY_FILE) as file:
-        file.set_auto_mask(False)
-        return np.asarray(file[field][row])
+    path = run.directory / HISTORY_FILE
+    with dataset(path) as file:
+        changing = [
+            name
+            for name, variable in file.variables.items()
+            if variable.dimensions in [("Time", place) for place in DIMENSIONS]
+        ]
+    if field not in changing:
+        raise InputError(f"{path} has no field '{field}' that changes in time; choose among {', '.join(changing)}")
 
 
 def _extremes(run: Run, field: str, rows: Index, progress: Progress) -> Array:
     """The least and the largest value (n_rows, 2) of each snapshot."""
     extremes = np.empty((len(rows), 2))
     for done, row in enumerate(rows):
-        values = _values(run, field, row)
-        extremes[done] = np.nanmin(values), np.nanmax(values)
+        values = run.field(field, int(row))
+        extremes[done] = values.min(), values.max()
         progress("range of colours", (done + 1) / len(rows))
     return extremes
 
@@ -145,7 +145,7 @@ def _frames(
     font = ImageFont.truetype(font_manager.findfont("DejaVu Sans"), max(10, round(LETTERS * height)))
     digits = _decimals(run.days[rows])
     for done, row in enumerate(rows):
-        image = Image.fromarray(stencil.picture(colours.to_rgba(_values(run, field, row), bytes=True)[:, :3]))
+        image = Image.fromarray(stencil.picture(colours.to_rgba(run.field(field, int(row)), bytes=True)[:, :3]))
         place = (0.5 * font.size, 0.4 * font.size)
         ImageDraw.Draw(image).text(place, f"day {run.days[row]:.{digits}f}", fill="black", font=font)
         yield np.asarray(image)

@@ -38,16 +38,16 @@ class OpenedRun(Run):
         time = -1 if day is None else self.number_of(day)
         return plot_field(self, field, ax, time=time, region=region, **options)
 
-    def view(self, other: Run | None = None, *, fields: Sequence[str] = ()) -> "Page":
+    def view(self, other: Run | None = None, *, fields: str | Sequence[str] = ()) -> "Page":
         """The page with the globe that `trisk view` writes; a notebook shows it, and `save` writes it to a file.
 
-        With an `other` run on the same mesh it shows both and their difference. `fields` are those of the history, by
-        default all but those at edges. Raises `InputError` as `postprocess.view.view_page` does.
+        With an `other` run on the same mesh it shows both and their difference. `fields` is one of the history or
+        several, by default all but those at edges. Raises `InputError` as `postprocess.view.view_page` does.
         """
         from postprocess.interactive.page import Page
         from postprocess.view import page_of
 
-        return Page(page_of(self, other, fields), self.directory.name)
+        return Page(page_of(self, other, [fields] if isinstance(fields, str) else fields), self.directory.name)
 
 
 def open_run(directory: AnyPath) -> OpenedRun:

@@ -4,7 +4,8 @@ from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 
-from mesh.safe_files import AnyPath, written_aside
+from mesh.safe_files import AnyPath
+from postprocess.view import write_page
 
 HEIGHT = 720
 """Of the frame, in pixels."""
@@ -18,11 +19,8 @@ class Page:
     name: str
 
     def save(self, path: AnyPath) -> Path:
-        """Write the page to a file; return its path."""
-        path = Path(path)
-        with written_aside(path) as aside:
-            aside.write_text(self.html, encoding="utf-8")
-        return path
+        """Write the page to a file, .html; return its path. Raises `InputError` as `postprocess.view.require_page`."""
+        return write_page(self.html, path)
 
     def __repr__(self) -> str:
         return f"<Page of {self.name}, {len(self.html) / 1e6:.1f} MB; a notebook shows it, and save(path) writes it>"

@@ -169,7 +169,7 @@ class Run(Shown):
         return self._read(row, (name,)).fields[name]
 
     def _read(self, row: int, names: Collection[str] = FIELDS) -> Snapshot:
-        with dataset(self.directory / HISTORY_FILE) as file:
+        with _readable(self.directory), dataset(self.directory / HISTORY_FILE) as file:
             file.set_auto_mask(False)
             present = {name: np.asarray(file[name][row]) for name in names if name in file.variables}
         snapshot = Snapshot(float(self.days[row]), _Fields(self.directory, present))

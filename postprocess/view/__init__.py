@@ -1,5 +1,5 @@
 """Runs as pages for a browser: the globe, a map, the values of every cell."""
 
-from postprocess.view.html_page import page_of, view_page
+from postprocess.view.html_page import page_of, require_page, view_page, write_page
 
-__all__ = ["page_of", "view_page"]
+__all__ = ["page_of", "require_page", "view_page", "write_page"]

@@ -28,6 +28,8 @@ MOST_VALUES_OF_16_BITS = 6_000_000
 
 BITS_OF_THE_MESH = 16
 
+PAGE_SUFFIXES = (".html", ".htm")
+
 SAME_PLACE = 1e-6
 """Generators closer together than this, in radii of the sphere, are the same."""
 
@@ -36,13 +38,31 @@ def view_page(run: Run, output: AnyPath, other: Run | None = None, fields: Seque
     """Write the page of a run, or of two side by side with their difference, to the file `output`; return its path.
 
     `fields` are those of the history that it shows: by default all but those at edges. Raises `InputError` where there
-    is no such field, where the two runs have different meshes or no day in common, or where `output` has no folder.
+    is no such field, where the two runs have different meshes or no day in common, and as `require_page` does.
+    """
+    require_page(output)
+    return write_page(page_of(run, other, fields), output)
+
+
+def require_page(output: AnyPath) -> None:
+    """Raise `InputError` unless a page can be written to `output`, which has a folder and ends in .html or .htm.
+
+    Without such an end, a slip of the hand could replace a file of the run.
     """
     output = Path(output)
+    if output.suffix not in PAGE_SUFFIXES:
+        raise InputError(f"{output} is no page for a browser; end its name in .html")
+    if output.exists() and not output.is_file():
+        raise InputError(f"{output} cannot be written, as it exists and is not a file; choose another place")
     if not output.parent.is_dir():
         raise InputError(f"{output} cannot be written: there is no folder {output.parent}; make it first")
     require_possible_folder(output.parent)
-    page = page_of(run, other, fields)
+
+
+def write_page(page: str, output: AnyPath) -> Path:
+    """Write the HTML of a page to `output`; return its path. Raises `InputError` as `require_page` does."""
+    output = Path(output)
+    require_page(output)
     with written_aside(output) as aside:
         aside.write_text(page, encoding="utf-8")
     return output

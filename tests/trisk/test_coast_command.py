@@ -1,11 +1,15 @@
 """`trisk mesh --coast`: cells that the coast of a region clips."""
 
+import re
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-from mesh import find_region, mesh_quality, read_mesh
+from mesh import MeshError, find_region, mesh_quality, read_mesh
+from mesh.coast.generation import coast_smoothing
 from mesh.discrete.walls import has_walls
+from mesh.regions.coastline import LONGEST
 from tests.trisk.conftest import Call
 
 BOX = "300,340,20,50"
@@ -43,10 +47,30 @@ def test_cells_get_smaller_towards_the_coast(trisk: Call, tmp_path: Path) -> Non
     sizes = np.sqrt(mesh.area_cell)
     assert sizes[away > 900.0].mean() > 1.6 * sizes[away < 200.0].mean()
     assert "raised 16 times" in mesh.density_name
-    for wrong in (("--coast-width", 0), ("--coast-width", 100, "--coast-factor", 0.5)):
+    for wrong, told in (
+        (("--coast-width", 0), "--coast-width is 0; give a positive number of km"),
+        (("--coast-width", "nan"), "--coast-width is nan; give a positive number of km"),
+        (("--coast-width", 100, "--coast-factor", 0.5), "cannot be raised 0.5 times at the coast"),
+        (("--coast-factor", 3), "--coast-factor is 3, but over no width; give --coast-width too"),
+    ):
         code, _, err = trisk("mesh", "--coast", BOX, "--cells", 150, "-o", target, *wrong)
         assert code == 2
-        assert "raised" in err
-    code, _, err = trisk("mesh", "--cells", 150, "-o", target, "--coast-width", 100)
+        assert told in err
+    for alone in ("--coast-width", "--coast-factor"):
+        code, _, err = trisk("mesh", "--cells", 150, "-o", target, alone, 100)
+        assert code == 2
+        assert f"{alone} goes with --coast alone" in err
+
+
+def test_too_few_cells_are_told_in_cells(trisk: Call, tmp_path: Path) -> None:
+    code, _, err = trisk("mesh", "--coast", BOX, "--cells", 0, "-o", tmp_path / "sea.nc")
     assert code == 2
-    assert "--coast" in err
+    assert "a mesh of 0 cells is too small; ask for at least 12" in err
+    code, _, err = trisk("mesh", "--coast", "280,350,10,60", "--cells", 12, "-o", tmp_path / "sea.nc")
+    assert code == 2
+    found = re.search(r"12 cells are too few to follow its coast; ask for at least (\d+)", err)
+    assert found is not None
+    box, enough = find_region("280,350,10,60"), int(found.group(1))
+    assert coast_smoothing(box, enough) <= LONGEST
+    with pytest.raises(MeshError, match="too few"):
+        coast_smoothing(box, enough - 1)

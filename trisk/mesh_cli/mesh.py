@@ -1,5 +1,6 @@
 """`trisk mesh`: generate a mesh."""
 
+import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -17,6 +18,9 @@ if TYPE_CHECKING:
     from mesh.generation.optimizer import Callback
     from mesh.mesh_request import MeshRequest
     from mesh.voronoi_mesh import VoronoiMesh
+
+COAST_FACTOR = 16.0
+"""By how much the density is raised at the coast where a width alone is given."""
 
 
 def _defaults() -> Any:
@@ -70,8 +74,11 @@ def mesh(
         typer.Option("--coast-width", help="Raise the density towards the coast over this width, in km on the Earth."),
     ] = None,
     coast_factor: Annotated[
-        float, typer.Option("--coast-factor", help="How many times --coast-width raises the density at the coast.")
-    ] = 16.0,
+        float | None,
+        typer.Option(
+            "--coast-factor", help="How many times --coast-width raises the density at the coast; by default 16."
+        ),
+    ] = None,
     start: Annotated[
         str | None,
         typer.Option(
@@ -143,14 +150,14 @@ def mesh(
     if coast is not None:
         if resume or nested is not None:
             raise MeshError("--resume and --nested do not go with --coast; leave them out")
-        raised = None if coast_width is None else (coast_width, coast_factor)
-        made_at_sea = _with_coast(coast, request, raised, quiet)
+        made_at_sea = _with_coast(coast, request, _raised(coast_width, coast_factor), quiet)
         write_mesh(made_at_sea, output, command_line(), file_format)
         if not quiet:
             print_quality(made_at_sea, str(output))
         return
-    if coast_width is not None:
-        raise MeshError("--coast-width goes with --coast alone; name a region, or leave it out")
+    for option, given in (("--coast-width", coast_width), ("--coast-factor", coast_factor)):
+        if given is not None:
+            raise MeshError(f"{option} goes with --coast alone; name a region, or leave it out")
     if nested is not None:
         # Generators and triangles serve, whatever else the file holds.
         request = replace(request, nested=read_mesh(nested, recompute_metrics=True))
@@ -161,6 +168,19 @@ def mesh(
         write_mesh(made.mesh, output, command_line(), file_format)
     if not quiet:
         print_quality(made.mesh, str(output))
+
+
+def _raised(width: float | None, factor: float | None) -> tuple[float, float] | None:
+    """Width, km, and factor by which the density rises towards the coast; raise `MeshError` where there is no such."""
+    from mesh import MeshError
+
+    if width is None:
+        if factor is not None:
+            raise MeshError(f"--coast-factor is {factor:g}, but over no width; give --coast-width too, or leave it out")
+        return None
+    if not 0.0 < width < math.inf:
+        raise MeshError(f"--coast-width is {width:g}; give a positive number of km")
+    return width, COAST_FACTOR if factor is None else factor
 
 
 def _with_coast(coast: str, request: "MeshRequest", raised: tuple[float, float] | None, quiet: bool) -> "VoronoiMesh":

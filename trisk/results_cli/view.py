@@ -29,8 +29,9 @@ def view(
     The page needs no network: it holds the cells and all snapshots.
     """
     from postprocess.runs.reading import read_run
-    from postprocess.view import view_page
+    from postprocess.view import require_page, view_page
 
+    require_page(output)
     other = None if other_directory is None else read_run(other_directory)
     path = view_page(read_run(run_directory), output, other, _names(fields))
     if not quiet:

@@ -137,3 +137,25 @@ def test_iris_puts_fields_on_the_mesh(any_run: Path, file: Path) -> None:
     assert cube.location == "face"
     assert cube.mesh.face_node_connectivity.shape[0] == mesh.n_cells
     assert cube.coord("time").shape == (3,)
+
+
+def test_angles_of_normals_are_degrees_from_east(file: Path) -> None:
+    with netCDF4.Dataset(file) as found:
+        found.set_auto_mask(False)
+        assert found["edge_normal_angle"].units == "degrees"
+        angle, faces = found["edge_normal_angle"][:], found["edge_faces"][:]
+        longitude, latitude = (np.radians(found[f"edge_{kind}"][:]) for kind in ("lon", "lat"))
+        points = unit_vectors(*(np.radians(found[f"face_{kind}"][:]) for kind in ("lon", "lat")))
+    east = np.stack([-np.sin(longitude), np.cos(longitude), np.zeros_like(longitude)], axis=1)
+    north = unit_vectors(longitude, latitude + 0.5 * np.pi)
+    inner = faces.min(axis=1) >= 0
+    across = points[faces[inner, 1]] - points[faces[inner, 0]]
+    expected = np.degrees(np.arctan2((across * north[inner]).sum(axis=1), (across * east[inner]).sum(axis=1)))
+    away = (angle[inner] - expected + 180.0) % 360.0 - 180.0
+    assert np.abs(away).max() < 2.0
+
+
+def unit_vectors(longitude: np.ndarray, latitude: np.ndarray) -> np.ndarray:
+    return np.stack(
+        [np.cos(latitude) * np.cos(longitude), np.cos(latitude) * np.sin(longitude), np.sin(latitude)], axis=1
+    )

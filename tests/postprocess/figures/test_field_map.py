@@ -242,7 +242,7 @@ def test_cylindrical_maps_without_extent_show_the_globe(
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"field": "depth"}, "there is no field named 'depth'; choose among .*, thickness, .*, area_cell"),
+        ({"field": "depth"}, r"there is no field named 'depth'; choose among thickness, .*, topography, .*, area_cell"),
         ({"time": 3}, r"history\.nc has 3 snapshots, and none of number 3; count from 0"),
         ({"time": -4}, "none of number -4"),
         ({"field": np.zeros(5)}, r"values of shape \(5,\) are on no part of a mesh of 162 cells, 480 edges and 320"),
@@ -258,6 +258,7 @@ def test_cylindrical_maps_without_extent_show_the_globe(
         ({"region": (0.0, 0.0, -10.0, 10.0)}, r"a map has no region \(0.0, 0.0, -10.0, 10.0\); give west, east, south"),
         ({"region": (0.0, 20.0, 10.0, -10.0)}, "south below north"),
         ({"region": (0.0, 20.0, 10.0, 91.0)}, "a map has no region"),
+        ({"region": (0.0, 20.0, 10.0)}, "give four numbers, west, east, south and north"),
         ({"region": (0.0, np.nan, 10.0, 20.0)}, "a map has no region"),
         ({"region": (0.0, 20.0, 0.0, 20.0), "extent": 20.0}, "give it without centre and extent"),
         ({"region": (0.0, 20.0, 0.0, 20.0), "projection": "orthographic"}, "on the cylindrical projection"),

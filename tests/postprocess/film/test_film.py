@@ -1,5 +1,6 @@
 """Films: frames, sizes, colours and days, and how they refuse."""
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -43,7 +44,7 @@ def frames_of(path: Path) -> list[np.ndarray]:
 
 
 def at_middle_of_map(frame: np.ndarray) -> np.ndarray:
-    return np.median(frame[80:86, 110:130].reshape(-1, 3), axis=0)
+    return np.median(frame[94:102, 128:141].reshape(-1, 3), axis=0)  # south of the numbers of the meridians
 
 
 def test_frames_follow_the_snapshots(run: Run, tmp_path: Path) -> None:
@@ -78,8 +79,9 @@ def test_gif(run: Run, tmp_path: Path) -> None:
         ({"size": (321, 180)}, "give even numbers"),
         ({"size": (20, 20)}, "give each side 160 to"),
         ({"field": "salinity"}, "choose among"),
-        ({"field": "topography"}, "does not change in time"),
+        ({"field": "topography"}, "no field 'topography' that changes in time; choose among thickness, "),
         ({"days": (5.0, 9.0)}, "has 0 snapshots from day 5 to day 9"),
+        ({"days": (0.5, 1.0)}, "has 1 snapshot from day 0.5 to day 1"),
         ({"projection": "mercator"}, "choose one of mollweide"),
     ],
 )
@@ -88,6 +90,15 @@ def test_refuses(run: Run, tmp_path: Path, changed: dict, sentence: str) -> None
     with pytest.raises(InputError, match=sentence):
         film(run, asked.pop("field"), tmp_path / asked.pop("path"), **asked)
     assert not list(tmp_path.iterdir())
+
+
+def test_refuses_a_damaged_snapshot(run: Run, tmp_path: Path) -> None:
+    folder = shutil.copytree(run.directory, tmp_path / "damaged")
+    with dataset(folder / "history.nc", "r+") as file:
+        file["thickness"][1, 7] = np.nan
+    with pytest.raises(InputError, match="has non-finite thickness on day 1; it is damaged"):
+        film(open_run(folder), "thickness", tmp_path / "h.gif", size=SIZE)
+    assert [path.name for path in tmp_path.iterdir()] == ["damaged"]
 
 
 def test_tells_what_to_install(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,6 +12,7 @@ def test_a_run_shows_its_page(mountain_run: Path, tmp_path: Path) -> None:
     page = run.view(fields=["thickness"])
     written = view_page(run, tmp_path / "page.html", fields=["thickness"]).read_text(encoding="utf-8")
     assert page.html == written
+    assert run.view(fields="thickness").html == written
     assert page.save(tmp_path / "saved.html").read_text(encoding="utf-8") == written
     assert (
         repr(page)

@@ -141,3 +141,14 @@ def test_a_run_without_snapshots(mountain_run: Path, tmp_path: Path) -> None:
 def test_a_day_without_a_snapshot(mountain_run: Path) -> None:
     with pytest.raises(InputError, match=r"has no snapshot of day 3; its days are 0, 0\.25, 0\.5"):
         trisk.open_run(mountain_run).snapshot(3.0)
+
+
+def test_a_snapshot_that_has_gone_is_told(mountain_run: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(mountain_run, tmp_path / "run"))
+    run = trisk.open_run(folder)
+    (folder / "history.nc").unlink()
+    for read in (run.last_snapshot, lambda: run.field("thickness", 0)):
+        with pytest.raises(
+            InputError, match=r"holds no readable run .*No such file.*; name a directory that a run wrote"
+        ):
+            read()

@@ -2,6 +2,7 @@
 
 import json
 import re
+import shutil
 from importlib.resources import files
 from pathlib import Path
 
@@ -82,6 +83,20 @@ def test_what_cannot_be_shown_is_told(mountain_run: Path, sea_run: Path, tmp_pat
         page_of(run, open_run(sea_run))
     with pytest.raises(InputError, match="there is no folder"):
         view_page(run, tmp_path / "nowhere" / "page.html")
+    (tmp_path / "folder.html").mkdir()
+    with pytest.raises(InputError, match=r"folder\.html cannot be written, as it exists and is not a file; choose"):
+        view_page(run, tmp_path / "folder.html")
+
+
+def test_a_page_never_replaces_a_file_of_a_run(mountain_run: Path, tmp_path: Path) -> None:
+    folder = Path(shutil.copytree(mountain_run, tmp_path / "run"))
+    before = (folder / "history.nc").read_bytes()
+    run = open_run(folder)
+    with pytest.raises(InputError, match=r"history\.nc is no page for a browser; end its name in .html"):
+        view_page(run, folder / "history.nc")
+    with pytest.raises(InputError, match=r"end its name in \.html"):
+        run.view(fields=["thickness"]).save(folder / "history.nc")
+    assert (folder / "history.nc").read_bytes() == before
 
 
 def test_the_page_is_one_file(mountain_run: Path, tmp_path: Path) -> None:
