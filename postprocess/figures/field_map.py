@@ -10,6 +10,7 @@ from matplotlib.colors import Colormap, Normalize
 from matplotlib.ticker import ScalarFormatter
 
 from mesh.arrays import Array
+from mesh.geometry.angles import degrees_eastward
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.maps import draw_mollweide, draw_orthographic
@@ -107,7 +108,7 @@ def _box(
         raise InputError(
             f"a map has no region {region}; give west, east, south and north in degrees, south below north"
         )
-    width = (east - west) % 360.0 or 360.0
+    width = float(degrees_eastward(np.array(east - west))) or 360.0
     return (west + 0.5 * width, 0.5 * (south + north)), (width, north - south), "cylindrical"
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.discrete.walls import has_walls, wall_edges
-from mesh.geometry.angles import TURN
+from mesh.geometry.angles import TURN, eastward
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.view.packing import packed_list
 from swe.diagnostics.outputs import CELLS, EDGES, VERTICES
@@ -34,7 +34,7 @@ def packed_outlines(mesh: VoronoiMesh, places: set[str]) -> dict[str, Any]:
         "numberBits": NUMBER_BITS,
         "points": len(longitude),
         "cellPoints": [mesh.n_vertices, mesh.n_cells],
-        "longitude": packed_list(np.rint(longitude % TURN / TURN * top).astype(np.int64), ANGLE_BITS),
+        "longitude": packed_list(np.rint(eastward(longitude) / TURN * top).astype(np.int64), ANGLE_BITS),
         "latitude": packed_list(np.rint((latitude / np.pi + 0.5) * top).astype(np.int64), ANGLE_BITS),
         "spacing": float(mesh.dc_edge.min() / mesh.sphere_radius),
         "closed": not has_walls(mesh),
