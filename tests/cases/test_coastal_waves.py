@@ -13,6 +13,8 @@ from mesh.discrete.operators import normal_component
 from mesh.discrete.walls import wall_edges
 from swe import InputError, Simulation
 
+pytestmark = pytest.mark.slow
+
 WAVES = [Seiche(), Seiche(degree=1, order=1), Seiche(degree=3, order=1, depth=500.0), KelvinWave(wave_number=2)]
 
 

@@ -56,6 +56,7 @@ def test_a_mutant_differs_in_one_place(tmp_path: Path) -> None:
         assert mutant.endswith(SOURCE[mutation.stop :])
 
 
+@pytest.mark.slow
 def test_the_seed_decides_what_is_drawn() -> None:
     first = draw(ROOT, 30, seed=1)
     assert first == draw(ROOT, 30, seed=1)

@@ -11,6 +11,8 @@ pytest.importorskip("ducc0")
 from described import differences
 from make_shown import SHOWN_FILE, shown
 
+pytestmark = pytest.mark.slow
+
 STORED: dict[str, Any] = json.loads(SHOWN_FILE.read_text())
 NUMBER = re.compile(r"[-+]?\d+\.\d+(?:e[-+]?\d+)?")
 

@@ -80,6 +80,7 @@ def test_spectra(trisk: Call, tmp_path: Path) -> None:
     assert "run.json is not a writable folder" in err
 
 
+@pytest.mark.slow
 def test_reference(trisk: Call, tmp_path: Path) -> None:
     pytest.importorskip("ducc0")
     path = tmp_path / "reference.nc"

@@ -22,6 +22,8 @@ from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError
 from tests.conftest import stretched_mesh
 
+pytestmark = pytest.mark.slow
+
 
 @pytest.fixture(scope="module")
 def plan(tmp_path_factory: pytest.TempPathFactory) -> Plan:

@@ -33,6 +33,7 @@ def test_ugrid_checks_finds_no_error(file: Path) -> None:
     assert "No problems found" in done.stdout or "0 Rxxx requirement failures" in done.stdout, done.stdout
 
 
+@pytest.mark.slow
 def test_compliance_checker_finds_no_error(file: Path, tmp_path: Path) -> None:
     """Of its high priority. Section 9.5 is on discrete geometries, and the checker takes the roles of UGRID for those.
 
@@ -112,6 +113,7 @@ def test_bounds_are_the_corners_and_not_torn(any_run: Path, file: Path) -> None:
         assert np.all(latitudes[cell, len(ring) :] == latitudes[cell, len(ring) - 1])
 
 
+@pytest.mark.slow
 def test_uxarray_opens_it(any_run: Path, file: Path) -> None:
     uxarray = pytest.importorskip("uxarray")
     mesh = open_run(any_run).mesh

@@ -15,6 +15,8 @@ from postprocess import open_run
 from postprocess.view import view_page
 from tests.postprocess.view.conftest import OpenPage
 
+pytestmark = pytest.mark.slow
+
 PIXELS_OF_THE_RIM = 4
 STEADY = "() => window.trisk.shown && window.trisk.waiting === undefined"
 
