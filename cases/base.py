@@ -99,7 +99,7 @@ class Case(Shown, ABC):
         if told != own:
             rows["more parameters"] = f"{len(own) - len(told)}; see parameters()"
         name = getattr(self, "name", type(self).__name__)
-        return f"Case {name}", {name: words for name, words in rows.items() if words}
+        return f"Case {name}", rows
 
     def __post_init__(self) -> None:
         for each in fields(self):

@@ -10,7 +10,7 @@ from mesh.arrays import Array
 from mesh.plain import plain
 
 Rows = dict[str, str]
-"""What is told, by its name; each fits in a line."""
+"""What is told, by its name; each fits in a line, and where there is nothing to tell it is empty."""
 
 LONGEST = 80
 """Number of characters of a text that is told."""
@@ -37,8 +37,8 @@ class Shown:
 
 
 def as_text(title: str, rows: Mapping[str, str]) -> str:
-    """The title and, below it, one line for each row."""
-    return "<" + "\n  ".join([title, *(f"{name}: {value}" for name, value in rows.items())]) + ">"
+    """The title and, below it, one line for each row; rows without words are left out."""
+    return "<" + "\n  ".join([title, *(f"{name}: {value}" for name, value in rows.items() if value)]) + ">"
 
 
 def as_html(title: str, rows: Mapping[str, str]) -> str:
@@ -46,6 +46,7 @@ def as_html(title: str, rows: Mapping[str, str]) -> str:
     lines = "".join(
         f'<tr><th scope="row" {LEFT}>{html.escape(name)}</th><td {LEFT}>{html.escape(value)}</td></tr>'
         for name, value in rows.items()
+        if value
     )
     return f"<div><strong>{html.escape(title)}</strong><table><tbody>{lines}</tbody></table></div>"
 

@@ -139,7 +139,7 @@ class VoronoiMesh(Shown, Metrics, Topology):
             "coast": coast_in_words(self),
             "held": "" if self.fixed_cells is None else f"{np.count_nonzero(self.fixed_cells)} generators",
         }
-        return f"VoronoiMesh of {self.n_cells} cells", {name: words for name, words in rows.items() if words}
+        return f"VoronoiMesh of {self.n_cells} cells", rows
 
     @property
     def cell_points(self) -> Array:

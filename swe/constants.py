@@ -11,3 +11,6 @@ GRAVITY = 9.80616
 
 SECONDS_PER_DAY = 86400.0
 """Length of a day, s."""
+
+SQUARE_METRES_PER_SQUARE_KILOMETRE = 1e6
+"""Area of a square kilometre, m2."""

@@ -23,5 +23,4 @@ def numerics_in_words(configuration: Mapping[str, Any], forcings: Iterable[str])
         for name in ("anticipation", "upwinding", "dissipation", "wall_slip")
         if configuration.get(name)
     ]
-    told = {"options": ", ".join(options), "terms of the case": in_words(", ".join(map(str, forcings)))}
-    return rows | {name: words for name, words in told.items() if words}
+    return rows | {"options": ", ".join(options), "terms of the case": in_words(", ".join(map(str, forcings)))}

@@ -40,7 +40,7 @@ class Operators(Shown):
             "made": ", ".join(made),
             "made when asked for": ", ".join(name for name in names if name not in made),
         }
-        return "Operators", {name: words for name, words in rows.items() if words}
+        return "Operators", rows
 
     @cached_property
     def divergence(self) -> csr_array:

@@ -14,7 +14,7 @@ from mesh.conventions import BY_NAME
 from mesh.mesh_request import MeshRequest
 from mesh.safe_files import dataset, written_aside
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.runs.reading import DAY_TOLERANCE, Run
+from postprocess.runs.reading import Run
 from swe.errors import InputError
 
 VARIABLE = "kinetic_energy"
@@ -30,7 +30,7 @@ def time_mean(run: Run, field: str, first: float | None = None, last: float | No
     """The mean of a field over the snapshots of the second half of a run, or from day `first` to day `last` of it."""
     last = run.days[-1] if last is None else last
     first = last - AVERAGED_SHARE * (last - run.days[0]) if first is None else first
-    rows = np.flatnonzero((first - DAY_TOLERANCE <= run.days) & (run.days <= last + DAY_TOLERANCE))
+    rows = run.numbers_between(first, last)
     if not len(rows):
         raise InputError(f"{run.directory} has no snapshot from day {first:g} to day {last:g}; run it again")
     snapshots = (run.field(field, int(row)) for row in rows)

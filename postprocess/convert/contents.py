@@ -1,20 +1,17 @@
 """What of a run is converted: its mesh, its fields by place, and its snapshots one by one."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
 from mesh.arrays import Array
 from mesh.safe_files import dataset
-from postprocess.runs.reading import Run, Snapshot
+from postprocess.runs.reading import Progress, Run, Snapshot
 from swe.diagnostics.outputs import FIELDS, TOPOGRAPHY, Field
 from swe.output.files import HISTORY_FILE
 
 TOPOGRAPHY_NAME = "topography"
-
-Progress = Callable[[str, float], None]
-"""Takes the name of a task and the fraction of it that is done, 0 to 1."""
 
 
 @dataclass(frozen=True, eq=False)

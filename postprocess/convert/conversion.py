@@ -5,11 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from mesh.safe_files import AnyPath, place_of
-from postprocess.convert.contents import Contents, Progress, contents_of
+from postprocess.convert.contents import Contents, contents_of
 from postprocess.convert.ugrid import write_ugrid
 from postprocess.convert.vtk_series import PATTERNS, write_vtk
 from postprocess.convert.whole_folder import require_replaceable_folder
-from postprocess.runs.reading import read_run
+from postprocess.runs.folders import require_possible_file
+from postprocess.runs.reading import Progress, read_run
 from swe.errors import InputError
 from swe.output.recorder import FILES
 
@@ -52,12 +53,12 @@ def _require_possible(output: Path, chosen: Format, force: bool) -> None:
     """Raise `InputError` unless the result can stand at `output`."""
     if output.exists() and not force:
         raise InputError(f"{output} exists already; choose another place, or replace it (--force)")
+    if not chosen.patterns:
+        require_possible_file(output)
+        return
     if not place_of(output).parent.is_dir():
         raise InputError(f"{output} cannot be written, as there is no such folder; choose another place")
-    if chosen.patterns:
-        require_replaceable_folder(output, chosen.patterns)
-    elif output.exists() and not output.is_file():
-        raise InputError(f"{output} cannot be written, as it exists and is not a file; choose another place")
+    require_replaceable_folder(output, chosen.patterns)
 
 
 def _require_other_place(output: Path, directory: Path) -> None:

@@ -7,9 +7,9 @@ import netCDF4
 import numpy as np
 
 from mesh.safe_files import dataset, written_aside
-from postprocess.convert.contents import Contents, Progress
+from postprocess.convert.contents import Contents
 from postprocess.convert.ugrid_mesh import FACE_AREA, LOCATIONS, define_mesh, fill_mesh, place_attributes
-from postprocess.runs.reading import Run
+from postprocess.runs.reading import Progress, Run
 from swe.diagnostics.outputs import Field
 from swe.errors import RunError
 

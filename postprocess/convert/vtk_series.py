@@ -7,10 +7,10 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.convert.contents import Contents, Progress
+from postprocess.convert.contents import Contents
 from postprocess.convert.vtu import LINE, POLYGON, Grid, Values, write_series, write_vtu
 from postprocess.convert.whole_folder import folder_aside
-from postprocess.runs.reading import Snapshot
+from postprocess.runs.reading import Progress, Snapshot
 from swe.diagnostics.outputs import CELLS, EDGES, VERTICES
 from swe.errors import RunError
 

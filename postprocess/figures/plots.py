@@ -15,9 +15,8 @@ from postprocess.figures.maps import draw_mollweide, draw_orthographic
 from postprocess.figures.palettes import colours_for
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
-from swe.constants import SECONDS_PER_DAY
+from swe.constants import SECONDS_PER_DAY, SQUARE_METRES_PER_SQUARE_KILOMETRE
 
-SQUARE_METRES_PER_SQUARE_KILOMETRE = 1e6
 DOTS_PER_INCH = 150
 ROUND_OFF_FLOOR = 1e-20
 """Smaller changes are drawn at this value, since zero has no logarithm."""

@@ -112,6 +112,15 @@ def _is_field(variable: netCDF4.Variable) -> bool:
     return of_place and variable.dimensions[:-1] in ((), ("Time",)) and variable.dtype.kind == "f"
 
 
+def changing_fields(file: netCDF4.Dataset) -> dict[str, str]:
+    """Fields that each snapshot of an open history holds, and the dimension of their place."""
+    return {
+        name: variable.dimensions[1]
+        for name, variable in file.variables.items()
+        if variable.dimensions in [("Time", place) for place in DIMENSIONS]
+    }
+
+
 def _is_length(variable: MeshVariable) -> bool:
     """Whether values are lengths or areas, which have no units on the unit sphere."""
     return variable.units in ("m", "m2")

@@ -1,6 +1,6 @@
 """Films of a run: one field over its snapshots."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +13,10 @@ from mesh.arrays import Array, Index
 from mesh.safe_files import AnyPath, dataset
 from postprocess.figures.field_map import Projection, plot_field
 from postprocess.figures.palettes import colours_for
-from postprocess.figures.shown_fields import DIMENSIONS, ShownField, snapshot_field
+from postprocess.figures.shown_fields import ShownField, changing_fields, snapshot_field
 from postprocess.film.film_file import require_kind, write_film
 from postprocess.film.stencil import Pixels, Stencil, stencil_of
-from postprocess.runs.reading import DAY_TOLERANCE, Run, days_in_words
+from postprocess.runs.reading import Progress, Run, days_in_words
 from swe.errors import InputError
 from swe.output.files import HISTORY_FILE
 
@@ -31,8 +31,6 @@ FEWEST_FRAMES_PER_SECOND, MOST_FRAMES_PER_SECOND = 4.0, 25.0
 
 LETTERS = 1.0 / 36.0
 """Height of the day's letters, of that of the film."""
-
-Progress = Callable[[str, float], None]
 
 
 def film(
@@ -64,7 +62,9 @@ def film(
     colours = ScalarMappable(**colours_for(field, _extremes(run, field, rows, progress)).options)
     stencil = _stencil(run, shown, colours, size, projection, centre)
     frames = _frames(run, field, rows, stencil, colours, progress)
-    write_film(path, frames, size, _frames_per_second(len(rows)), _bytes(colours.cmap(np.linspace(0.0, 1.0, 256))))
+    write_film(
+        path, frames, size, _frames_per_second(len(rows)), colours.cmap(np.linspace(0.0, 1.0, 256), bytes=True)[:, :3]
+    )
     return path
 
 
@@ -78,7 +78,7 @@ def _require_size(size: tuple[int, int]) -> None:
 def _rows(run: Run, days: tuple[float, float] | None) -> Index:
     """Numbers of the snapshots from the first to the last of `days`."""
     first, last = days or (run.days[0], run.days[-1])
-    rows = np.flatnonzero((run.days >= first - DAY_TOLERANCE) & (run.days <= last + DAY_TOLERANCE))
+    rows = run.numbers_between(first, last)
     if len(rows) < 2:
         raise InputError(
             f"{run.directory} has {len(rows)} snapshot{'' if len(rows) == 1 else 's'} from day {first:g} to day "
@@ -90,11 +90,7 @@ def _rows(run: Run, days: tuple[float, float] | None) -> Index:
 def _require_in_time(run: Run, field: str) -> None:
     path = run.directory / HISTORY_FILE
     with dataset(path) as file:
-        changing = [
-            name
-            for name, variable in file.variables.items()
-            if variable.dimensions in [("Time", place) for place in DIMENSIONS]
-        ]
+        changing = changing_fields(file)
     if field not in changing:
         raise InputError(f"{path} has no field '{field}' that changes in time; choose among {', '.join(changing)}")
 
@@ -107,11 +103,6 @@ def _extremes(run: Run, field: str, rows: Index, progress: Progress) -> Array:
         extremes[done] = values.min(), values.max()
         progress("range of colours", (done + 1) / len(rows))
     return extremes
-
-
-def _bytes(colours: Array) -> Pixels:
-    """Red, green and blue from 0 to 255 of colours (n, 4) from 0 to 1."""
-    return np.round(255.0 * np.asarray(colours)[:, :3]).astype(np.uint8)
 
 
 def _stencil(

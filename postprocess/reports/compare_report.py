@@ -1,7 +1,8 @@
 """The report of a comparison: its verdict, its maps and its tables."""
 
 from collections.abc import Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -49,43 +50,53 @@ def names_of(directories: Sequence[Path]) -> list[str]:
     ]
 
 
-def verdict_of(comparison: Comparison) -> Verdict:
-    """What a comparison found, by question."""
-    rows = [row for row in comparison_rows(comparison) if _has_norms(row)]
-    return comparison_verdict(rows, _reference(comparison), _wording(comparison))
+@dataclass(frozen=True, eq=False)
+class ComparisonReport:
+    """What is told of a comparison: its rows, made once, and the verdict and the page made of them."""
 
+    comparison: Comparison
 
-def write_comparison_report(
-    comparison: Comparison, verdict: Verdict, maps: Sequence[Path], folder: Path, arguments: Sequence[str]
-) -> Path:
-    """Write the report of a comparison, with its `verdict` and the `maps` drawn of it, to `folder`; return its path."""
-    rows = comparison_rows(comparison)
-    compared = [row for row in rows if _has_norms(row)]
-    day, word = comparison.days[-1], _wording(comparison)
-    sections = {
-        f"Norms of the {word.noun}": table_of(compared, NORM_COLUMNS),
-        f"Where the {word.one} thickness lies on day {day:g}: shares of its square and of the area": table_of(
-            [row for row in compared if row["day"] == day], KEYS | share_columns(word.noun)
-        ),
-        "Changes since the start": table_of(rows, CONSERVATION_COLUMNS),
-    }
-    case = case_of(comparison.entries[0].run)
-    title = comparison.case if case is None else case.title
-    days = "day" if len(comparison.days) == 1 else "days"
-    text = (
-        f"{title}, {days} {', '.join(f'{each:g}' for each in comparison.days)}, against: "
-        f"{comparison.solution.name}. Norms are those of Williamson et al. (1992)."
-    )
-    return write_pictures(
-        folder,
-        f"Comparison: {title}, day {day:g}",
-        text,
-        arguments,
-        sections,
-        {path.stem: at_page_size(path.read_bytes(), DOTS_PER_INCH) for path in maps},
-        verdict,
-        comparison_captions(day, len(comparison.compared)),
-    )
+    @cached_property
+    def rows(self) -> list[StudyRow]:
+        """See `comparison_rows`."""
+        return comparison_rows(self.comparison)
+
+    @cached_property
+    def verdict(self) -> Verdict:
+        """What was found, by question."""
+        return comparison_verdict(self._with_norms(), _reference(self.comparison), _wording(self.comparison))
+
+    def write(self, maps: Sequence[Path], folder: Path, arguments: Sequence[str]) -> Path:
+        """Write the report, with the `maps` drawn of the comparison, to `folder`; return its path."""
+        comparison, compared = self.comparison, self._with_norms()
+        day, word = comparison.days[-1], _wording(comparison)
+        sections = {
+            f"Norms of the {word.noun}": table_of(compared, NORM_COLUMNS),
+            f"Where the {word.one} thickness lies on day {day:g}: shares of its square and of the area": table_of(
+                [row for row in compared if row["day"] == day], KEYS | share_columns(word.noun)
+            ),
+            "Changes since the start": table_of(self.rows, CONSERVATION_COLUMNS),
+        }
+        case = case_of(comparison.entries[0].run)
+        title = comparison.case if case is None else case.title
+        days = "day" if len(comparison.days) == 1 else "days"
+        text = (
+            f"{title}, {days} {', '.join(f'{each:g}' for each in comparison.days)}, against: "
+            f"{comparison.solution.name}. Norms are those of Williamson et al. (1992)."
+        )
+        return write_pictures(
+            folder,
+            f"Comparison: {title}, day {day:g}",
+            text,
+            arguments,
+            sections,
+            {path.stem: at_page_size(path.read_bytes(), DOTS_PER_INCH) for path in maps},
+            self.verdict,
+            comparison_captions(day, len(comparison.compared)),
+        )
+
+    def _with_norms(self) -> list[StudyRow]:
+        return [row for row in self.rows if any(f"{field}_l2" in row for field in FIELD_WORDS)]
 
 
 def _wording(comparison: Comparison) -> Wording:
@@ -95,10 +106,6 @@ def _wording(comparison: Comparison) -> Wording:
 def _reference(comparison: Comparison) -> str:
     name = comparison.solution.name
     return f"the {name}" if name == "exact solution" else name
-
-
-def _has_norms(row: StudyRow) -> bool:
-    return any(f"{field}_l2" in row for field in FIELD_WORDS)
 
 
 def _row(comparison: Comparison, entry: Entry) -> StudyRow:

@@ -1,10 +1,25 @@
-"""Folders for results, checked before the work that fills them."""
+"""Places for results, checked before the work that fills them."""
 
 import os
+import tempfile
 from pathlib import Path
 
 from mesh.safe_files import AnyPath, place_of
 from swe.errors import InputError
+
+
+def require_possible_file(path: Path) -> None:
+    """Raise `InputError` if no file can be written to `path`."""
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path} cannot be written, as it exists and is not a file; choose another place")
+    try:
+        place = place_of(path)
+        if not place.parent.is_dir():
+            raise InputError(f"{path} cannot be written, as there is no such folder; choose another place")
+        with tempfile.NamedTemporaryFile(dir=place.parent):
+            pass
+    except OSError as error:
+        raise InputError(f"{path} cannot be written ({error.strerror}); choose another place") from error
 
 
 def require_possible_folder(path: AnyPath) -> None:

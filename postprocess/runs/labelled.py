@@ -1,7 +1,9 @@
 """Files of a run as objects of xarray and uxarray, which are optional extras and imported on first use."""
 
+from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from mesh.safe_files import netcdf_lock
 from swe.errors import InputError
@@ -16,17 +18,7 @@ def opened_by_xarray(path: Path) -> "xarray.Dataset":
 
     Raises `InputError` if xarray is not installed or the file cannot be read.
     """
-    try:
-        import xarray
-    except ImportError as missing:
-        raise InputError(
-            f"{path} is opened by the package xarray, which is missing; install it with pip install 'trisk[xarray]'"
-        ) from missing
-    try:
-        with netcdf_lock:
-            return xarray.open_dataset(path.absolute(), engine="netcdf4")
-    except (OSError, RuntimeError, ValueError) as error:
-        raise InputError(f"{path} cannot be read ({error}); name a directory that a run wrote") from error
+    return _opened(path, "xarray", lambda xarray: xarray.open_dataset(path.absolute(), engine="netcdf4"))
 
 
 def grid_of_uxarray(path: Path) -> "uxarray.Grid":
@@ -34,14 +26,20 @@ def grid_of_uxarray(path: Path) -> "uxarray.Grid":
 
     Raises `InputError` if uxarray is not installed or the file cannot be read.
     """
+    return _opened(path, "uxarray", lambda uxarray: uxarray.open_grid(path.absolute()))
+
+
+def _opened(path: Path, package: str, opened_by: Callable[[Any], Any]) -> Any:
+    """What a package that is an extra of its own name makes of a file."""
     try:
-        import uxarray
+        module = import_module(package)
     except ImportError as missing:
         raise InputError(
-            f"{path} is opened by the package uxarray, which is missing; install it with pip install 'trisk[uxarray]'"
+            f"{path} is opened by the package {package}, which is missing; "
+            f"install it with pip install 'trisk[{package}]'"
         ) from missing
     try:
         with netcdf_lock:
-            return uxarray.open_grid(path.absolute())
+            return opened_by(module)
     except (OSError, RuntimeError, ValueError) as error:
         raise InputError(f"{path} cannot be read ({error}); name a directory that a run wrote") from error

@@ -1,6 +1,6 @@
 """Read a run directory."""
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, get_args
 
 import numpy as np
 
-from mesh.arrays import Array
+from mesh.arrays import Array, Index
 from mesh.errors import MeshError
 from mesh.files.io import read_mesh
 from mesh.integrals.quadrature import Sampling
@@ -26,6 +26,9 @@ from swe.output.files import DIAGNOSTICS_FILE, HISTORY_FILE, MESH_FILE, load_rec
 if TYPE_CHECKING:
     import uxarray
     import xarray
+
+Progress = Callable[[str, float], None]
+"""Takes the name of a task and the fraction of it that is done, 0 to 1."""
 
 DAY_TOLERANCE = 1e-6
 """Snapshots closer together than this, in days, belong to the same day."""
@@ -93,7 +96,7 @@ class Run(Shown):
             "snapshots": f"{len(self.days)}, days {days_in_words(self.days)}",
             "fields": ", ".join(self.record.get("fields", FIELDS)),
         }
-        return f"Run of {self.case}", {name: words for name, words in rows.items() if words}
+        return f"Run of {self.case}", rows
 
     def _coast_in_words(self) -> str:
         """What the file of the mesh tells of its coast, without reading more; empty if it has none or is not there."""
@@ -152,6 +155,10 @@ class Run(Shown):
         """The number, from 0, of the snapshot of `day`; raise `InputError` if there is none."""
         self.require_snapshot(day)
         return int(np.argmin(np.abs(self.days - day)))
+
+    def numbers_between(self, first: float, last: float) -> Index:
+        """Numbers, from 0, of the snapshots from day `first` to day `last`."""
+        return np.flatnonzero((self.days >= first - DAY_TOLERANCE) & (self.days <= last + DAY_TOLERANCE))
 
     def require_snapshot(self, day: float) -> None:
         """Raise `InputError` if there is no snapshot of `day`."""

@@ -10,13 +10,12 @@ from mesh.density.record import density_of
 from mesh.discrete.quality import centroid_offsets, neighbour_distance_ratio
 from mesh.safe_files import dataset
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.figures.shown_fields import DIMENSIONS, printed_units
+from postprocess.figures.shown_fields import changing_fields, printed_units
 from postprocess.runs.reading import Run
+from swe.constants import SQUARE_METRES_PER_SQUARE_KILOMETRE
 from swe.diagnostics.outputs import CELLS
 from swe.errors import InputError
 from swe.output.files import HISTORY_FILE
-
-SQUARE_METRES_PER_SQUARE_KILOMETRE = 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,13 +35,8 @@ class PageField:
 def history_names(run: Run) -> dict[str, str]:
     """Places of the fields in the history of a run, by name: those of snapshots first, then what stays the same."""
     with dataset(run.directory / HISTORY_FILE) as file:
-        places = {
-            name: variable.dimensions[-1]
-            for name, variable in file.variables.items()
-            if variable.dimensions[-1:] in [(each,) for each in DIMENSIONS]
-            and (variable.dimensions[:-1] == ("Time",) or name == "topography")
-        }
-    return dict(sorted(places.items(), key=lambda item: item[0] == "topography"))
+        fixed = {"topography": file["topography"].dimensions[-1]} if "topography" in file.variables else {}
+        return changing_fields(file) | fixed
 
 
 def history_fields(run: Run, names: Sequence[str]) -> Iterator[PageField]:

@@ -98,7 +98,7 @@ def _content(runs: Sequence[Run], names: Sequence[str]) -> dict[str, Any]:
         packed += [_packed_field((field,), rows, BITS_OF_THE_MESH) for field in mesh_measures(mesh)]
     return {
         "title": f"{' and '.join(each.case for each in runs[: 1 + (runs[-1].case != run.case)])}, {run.cells} cells",
-        "panes": [] if len(runs) == 1 else [*_titles(runs), "difference: first minus second"],
+        "panes": [] if len(runs) == 1 else [*(str(each.directory) for each in runs), "difference: first minus second"],
         "days": [float(run.days[row]) for row in rows[0]],
         "mesh": packed_outlines(mesh, {field["place"] for field in packed}),
         "fields": packed,
@@ -106,16 +106,12 @@ def _content(runs: Sequence[Run], names: Sequence[str]) -> dict[str, Any]:
     }
 
 
-def _titles(runs: Sequence[Run]) -> list[str]:
-    return [str(run.directory) for run in runs]
-
-
 def _names(runs: Sequence[Run], chosen: Sequence[str]) -> list[str]:
     """Names of the fields to show; `history_fields` tells of those that are not there."""
     if chosen:
         return list(dict.fromkeys(chosen))
-    common = [name for name in history_names(runs[0]) if all(name in history_names(run) for run in runs[1:])]
-    return [name for name in common if history_names(runs[0])[name] != EDGES]
+    first, *others = (history_names(run) for run in runs)
+    return [name for name, place in first.items() if place != EDGES and all(name in other for other in others)]
 
 
 def _bits(run: Run, names: Sequence[str], snapshots: int) -> int:

@@ -138,7 +138,7 @@ class ShallowWaterModel(Shown):
             "topography": span(self.topography, "m"),
             "coriolis": span(self.coriolis, "1/s"),
         }
-        return "ShallowWaterModel", {name: words for name, words in rows.items() if words}
+        return "ShallowWaterModel", rows
 
     @property
     def forcings(self) -> tuple[Forcing, ...]:

@@ -5,6 +5,7 @@ act after each step instead (`after_steps`). The diagnostics of a run show what 
 """
 
 from collections.abc import Callable
+from typing import Self
 
 import numpy as np
 
@@ -48,7 +49,7 @@ class Term:
     after_steps = False
     rings = 2
 
-    def at_walls(self, wall_slip: float) -> "Term":
+    def at_walls(self, wall_slip: float) -> Self:
         """The term in a model with `wall_slip`, from 0 (no slip) to 1 (free slip); by default the same for all."""
         return self
 
@@ -109,10 +110,6 @@ class Forcing(Shown, Term):
         of_source, of_acceleration = set(INTEGRALS) - {"absolute_vorticity"}, set(INTEGRALS) - {"mass"}
         changed = (of_source if source else set()) | (of_acceleration if acceleration else set())
         self.changes = tuple(integral for integral in INTEGRALS if integral in changed)
-
-    def at_walls(self, wall_slip: float) -> "Forcing":
-        """See `Term`."""
-        return self
 
     def _title_and_rows(self) -> tuple[str, Rows]:
         """Its name and what it changes, and the functions and coefficients that it was made with."""

@@ -1,6 +1,7 @@
 """Laplacian viscosity, du/dt = A lap u, with the discrete Laplacian of `swe.equations.dissipation`."""
 
 from copy import copy
+from typing import Self
 
 import numpy as np
 
@@ -24,7 +25,7 @@ class Viscosity(Forcing):
         self.viscosity = coefficient("the viscosity", viscosity)
         self._wall_slip, self._operator = 0.0, self._operators(0.0)
 
-    def at_walls(self, wall_slip: float) -> "Viscosity":
+    def at_walls(self, wall_slip: float) -> Self:
         """See `Term`; another term where the slip is another one, as models may share this one."""
         if wall_slip == self._wall_slip:
             return self

@@ -8,7 +8,6 @@ from mesh.voronoi_mesh import coast_in_words, mesh_in_words
 from swe.configuration import Configuration
 from swe.constants import SECONDS_PER_DAY
 from swe.equations.model import ShallowWaterModel
-from swe.equations.terms import Forcing
 from swe.numerics_in_words import numerics_in_words
 from swe.output.description import Moment
 from swe.run.case import Case
@@ -21,11 +20,10 @@ def rows_of_simulation(
 
     Asks no other process: where several share the mesh, it is this one's part that is told of.
     """
-    forcings = [term.name for term in model.terms if isinstance(term, Forcing)]
     shared = f"shared by {model.processes.count}, {model.cells} cells in all" if model.processes.count > 1 else ""
-    numerics = numerics_in_words(asdict(configuration), forcings)
+    numerics = numerics_in_words(asdict(configuration), (term.name for term in model.forcings))
     numerics["integrator"] += f", {loops} loops"
-    rows = {
+    return {
         "case": in_words(getattr(case, "title", "")),
         "mesh": mesh_in_words(model.mesh),
         "processes": shared,
@@ -35,4 +33,3 @@ def rows_of_simulation(
         "reached": f"day {now.time / SECONDS_PER_DAY:g}, {now.steps} steps",
         "output": "none" if directory is None else str(directory),
     }
-    return {name: words for name, words in rows.items() if words}

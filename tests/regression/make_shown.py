@@ -130,8 +130,7 @@ def _runs(found: Shown) -> None:
     found.found["comparison as a record"] = comparison_record(comparison)
     with found.printed("comparison"):
         comparison_table.print_comparison(comparison)
-    verdict = compare_report.verdict_of(comparison)
-    page = compare_report.write_comparison_report(comparison, verdict, [], Path("."), ["trisk", "compare"])
+    page = compare_report.ComparisonReport(comparison).write([], Path("."), ["trisk", "compare"])
     found.found["comparison: page"] = _page(page)
     with found.figures("spectra"):
         write_spectra_of(runs, (), "spectra")

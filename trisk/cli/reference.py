@@ -28,7 +28,8 @@ def reference(
     from cases.parameters import split_settings
     from postprocess.reference.making import REFERENCE_DAYS, make_reference
     from postprocess.reference.reference_file import write_reference
-    from trisk.arguments.outputs import command_line, require_possible_file
+    from postprocess.runs.folders import require_possible_file
+    from trisk.arguments.outputs import command_line
     from trisk.report.bars import bars_of_parts
     from trisk.report.reference_table import print_differences
 

@@ -31,7 +31,8 @@ def cull(
     from mesh.files.io import require_format
     from mesh.parts.culling import culled
     from mesh.parts.sea_cells import sea_cells
-    from trisk.arguments.outputs import command_line, require_possible_file
+    from postprocess.runs.folders import require_possible_file
+    from trisk.arguments.outputs import command_line
     from trisk.report.summaries import print_quality, tell_of_sea
 
     require_format(file_format)

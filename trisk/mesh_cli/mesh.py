@@ -126,7 +126,8 @@ def mesh(
     from mesh.generation.pipeline import generate_mesh
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
-    from trisk.arguments.outputs import command_line, require_possible_file
+    from postprocess.runs.folders import require_possible_file
+    from trisk.arguments.outputs import command_line
     from trisk.report.summaries import print_quality, tell_of_centring
 
     request = MeshRequest(

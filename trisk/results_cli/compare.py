@@ -39,7 +39,7 @@ def compare(
     """
     from postprocess.compare.comparison import compare_runs, comparison_record
     from postprocess.figures.compare_maps import write_maps
-    from postprocess.reports.compare_report import verdict_of, write_comparison_report
+    from postprocess.reports.compare_report import ComparisonReport
     from postprocess.runs.folders import require_possible_folder
     from swe.output.files import FIGURES_FOLDER
     from trisk.report.comparison_table import print_comparison, print_verdict
@@ -47,14 +47,14 @@ def compare(
     folder = output or run_directories[0] / FIGURES_FOLDER
     require_possible_folder(folder)
     comparison = compare_runs(*run_directories, reference=reference, days=days or ())
-    verdict = verdict_of(comparison)
+    report = ComparisonReport(comparison)
     if not as_json:
-        print_verdict(verdict)
+        print_verdict(report.verdict)
         print_comparison(comparison)
     maps = write_maps(comparison, folder)
     written = list(maps)
     if output is not None:
-        written.append(write_comparison_report(comparison, verdict, maps, output, ["trisk", *sys.argv[1:]]))
+        written.append(report.write(maps, output, ["trisk", *sys.argv[1:]]))
     if as_json:
         typer.echo(json.dumps({**comparison_record(comparison), "maps": [str(path) for path in maps]}))
         return

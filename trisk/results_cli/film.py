@@ -32,8 +32,8 @@ def film(
     MP4 needs the extra 'film'; GIF does not.
     """
     from postprocess.film.film import film as write_film
+    from postprocess.runs.folders import require_possible_file
     from postprocess.runs.reading import open_run
-    from trisk.arguments.outputs import require_possible_file
     from trisk.arguments.pairs import pair_of
     from trisk.report.bars import bars_of_parts
 
