@@ -310,6 +310,7 @@ def test_wrong_option_keeps_the_run_that_force_would_replace(trisk, mesh_file: P
     assert json.loads((tmp_path / "run" / "run.json").read_text())["status"] == "completed"
 
 
+@pytest.mark.slow
 def test_full_disk_is_a_sentence(mesh_file: Path, tmp_path: Path) -> None:
     limited = "ulimit -f 300; exec " + shlex.join([sys.executable, "-m", "trisk"])
     for arguments, code in (

@@ -104,6 +104,7 @@ def test_names_of_densities() -> None:
     assert name_of(RefinedBox(ratio=2.0)) == "function RefinedBox"
 
 
+@pytest.mark.slow
 def test_held_generators_do_not_count(tmp_path: Path) -> None:
     box = RefinedBox()
     coarse = generate_scvt(MeshRequest(162))

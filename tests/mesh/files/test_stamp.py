@@ -79,6 +79,7 @@ def test_all_formats_are_stamped(
     assert not in_full
 
 
+@pytest.mark.slow
 def test_a_nested_mesh_and_one_that_was_read_are_stamped(tmp_path: Path, in_full: list[object]) -> None:
     nested = scvt_mesh(nested=scvt_mesh(162), density="refined-circle", cells=200)
     assert nested.fixed_cells is not None

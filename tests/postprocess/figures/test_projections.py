@@ -79,6 +79,7 @@ def patches_covering(polygons: Polygons, place: np.ndarray) -> set[int]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("globe_map", [MOLLWEIDE, CYLINDRICAL], ids=["mollweide", "cylindrical"])
 def test_every_place_on_the_map_shows_the_nearest_cell(turned_mesh: VoronoiMesh, globe_map: GlobeMap) -> None:
     """Random places, and places near the poles and the map's rim, lie in the polygon of the nearest generator."""

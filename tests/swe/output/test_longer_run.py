@@ -41,6 +41,7 @@ def kept_files(folder: Path) -> dict[str, bytes]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("integrator", STEPPINGS)
 @pytest.mark.parametrize("checkpoint_hours", [1.0, 12.0, 1000.0])
 @pytest.mark.parametrize("ends", [(1.0, 2.0), (1.0, 1.3), (1.01, 2.0), (0.3, 0.625, 1.99), (0.1, 1.0), (1.125, 1.5)])

@@ -57,6 +57,7 @@ def assert_tendencies_agree(mesh: VoronoiMesh, names: tuple[str, ...], scheme: t
     assert np.abs(expected.normal_velocity - without.normal_velocity).max() > 1e-4 * largest
 
 
+@pytest.mark.slow
 @COMBINATIONS
 @pytest.mark.usefixtures("few_or_many_tiles")
 def test_tendencies_agree(any_mesh: VoronoiMesh, names: tuple[str, ...], scheme: type[Scheme]) -> None:
