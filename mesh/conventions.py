@@ -42,7 +42,15 @@ class MeshOutline(MeshSizes, Protocol):
 
     @property
     def sphere_radius(self) -> float:
-        """Radius of the sphere, metres."""
+        """Radius of the sphere, metres; zero on a plane."""
+
+    @property
+    def x_period(self) -> float:
+        """Length after which a plane repeats itself in x, metres; zero if it does not."""
+
+    @property
+    def y_period(self) -> float:
+        """The same in y."""
 
     @property
     def density_name(self) -> str:

@@ -6,12 +6,16 @@ dimensions, units and meaning. In memory, indices count from 0 and -1 fills what
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
+from mesh.errors import MeshError
 from mesh.validated import is_validated, remember_validated
+
+Place = Literal["cell", "edge", "vertex"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,6 +87,8 @@ class Topology:
 class Metrics:
     """Positions and sizes of the entities: lengths in units of the sphere's radius as stored, angles in radians.
 
+    On a plane lengths are in metres, z, longitudes and latitudes are zero, and angles count from the x axis.
+
     `kite_areas_on_vertex[v, j]` is the part of cell `cells_on_vertex[v, j]` in triangle v. The tangential velocity
     at edge e is the sum of `weights_on_edge[e, j]` times the normal velocity at `edges_on_edge[e, j]`.
     """
@@ -113,7 +119,10 @@ class Metrics:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VoronoiMesh(Metrics, Topology):
-    """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
+    """A Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
+
+    It is on a sphere, or, with a `sphere_radius` of zero, on a plane that repeats itself after `x_period` and
+    `y_period` metres, where these are not zero (`mesh.geometry.surface`).
 
     `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density.named`)
     where that is known, and `density_source` where it is found (see `mesh.density.record`) where it comes from a file.
@@ -125,14 +134,38 @@ class VoronoiMesh(Metrics, Topology):
     density_name: str = ""
     density_source: str = ""
     fixed_cells: NDArray[np.bool_] | None = None
+    x_period: float = 0.0
+    y_period: float = 0.0
 
     def __repr__(self) -> str:
-        sphere = "the unit sphere" if self.sphere_radius == 1.0 else f"a sphere of radius {self.sphere_radius:g} m"
         density = f", density {self.density_name}" if self.density_name else ""
         return (
             f"<VoronoiMesh of {self.n_cells} cells, {self.n_edges} edges and {self.n_vertices} vertices on "
-            f"{sphere}{density}>"
+            f"{surface_in_words(self)}{density}>"
         )
+
+    @property
+    def on_a_sphere(self) -> bool:
+        """Whether the mesh is on a sphere, and not on a plane."""
+        return self.sphere_radius > 0.0
+
+    @property
+    def length_unit(self) -> float:
+        """What lengths are divided by for geometry: the radius of the sphere, one on a plane."""
+        return self.sphere_radius if self.on_a_sphere else 1.0
+
+    def coordinates(self, place: Place) -> tuple[Array, Array]:
+        """What functions of the place take at all cells, edges or vertices: longitude and latitude, or x and y.
+
+        Radians on a sphere, metres on a plane.
+        """
+        first, second = ("lon", "lat") if self.on_a_sphere else ("x", "y")
+        return getattr(self, f"{first}_{place}"), getattr(self, f"{second}_{place}")
+
+    def require_sphere(self, what: str) -> None:
+        """Raise `MeshError` on a plane; `what` begins the sentence."""
+        if not self.on_a_sphere:
+            raise MeshError(f"{what} for meshes on a sphere alone, and this one is on a plane")
 
     @property
     def cell_points(self) -> Array:
@@ -150,14 +183,39 @@ class VoronoiMesh(Metrics, Topology):
         return np.stack([self.x_vertex, self.y_vertex, self.z_vertex], axis=1)
 
     def scaled(self, radius: float) -> "VoronoiMesh":
-        """The same mesh on a sphere of another radius, in metres."""
-        factor = radius / self.sphere_radius
+        """The same mesh on a sphere of another radius, in metres.
+
+        Raises `MeshError` on a plane, but for a radius of zero, which leaves the mesh as it is.
+        """
+        factor = scale_factor(self.sphere_radius, radius)
+        if factor is None:
+            return self
         lengths = {name: getattr(self, name) * factor for name in LENGTH_NAMES}
         areas = {name: getattr(self, name) * factor**2 for name in AREA_NAMES}
         scaled = replace(self, sphere_radius=float(radius), **lengths, **areas)
         if is_validated(self):
             remember_validated(scaled)
         return scaled
+
+
+def scale_factor(old_radius: float, radius: float) -> float | None:
+    """What lengths are multiplied by on a sphere of another radius; None on a plane, whose radius is zero.
+
+    Raises `MeshError` where one is a plane and the other is not.
+    """
+    if (old_radius > 0.0) != (radius > 0.0):
+        here, wanted = ("a sphere", "a plane") if old_radius > 0.0 else ("a plane", "a sphere")
+        raise MeshError(f"the mesh is on {here}, but one on {wanted} is asked for; take another mesh")
+    return radius / old_radius if old_radius > 0.0 else None
+
+
+def surface_in_words(mesh: VoronoiMesh) -> str:
+    """What a mesh is on, as part of a sentence."""
+    if mesh.on_a_sphere:
+        return "the unit sphere" if mesh.sphere_radius == 1.0 else f"a sphere of radius {mesh.sphere_radius:g} m"
+    periods = {"x": mesh.x_period, "y": mesh.y_period}
+    repeated = " and ".join(f"{period:g} m in {axis}" for axis, period in periods.items() if period > 0.0)
+    return f"a plane that repeats itself after {repeated}" if repeated else "a plane"
 
 
 TOPOLOGY_NAMES = tuple(field.name for field in fields(Topology))

@@ -22,6 +22,7 @@ ROOMS = {
         "overlap",
         "parts",
         "partition",
+        "plane",
         "generation",
         "coast",
         "files",

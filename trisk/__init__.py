@@ -6,8 +6,8 @@ from typing import Any
 _PLACES = {
     "mesh": (
         *("MeshError", "MeshRequest", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
-        *("build_operators", "cull_mesh", "find_region", "mesh_from_points", "mesh_quality", "normal_component"),
-        *("partition_mesh", "read_mesh", "region_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *("build_operators", "cull_mesh", "find_region", "hexagon_mesh", "mesh_from_points", "mesh_quality"),
+        *("normal_component", "partition_mesh", "read_mesh", "region_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
     ),
     "swe": (
         *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),

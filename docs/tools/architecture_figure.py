@@ -19,6 +19,7 @@ ROOMS = {
         "overlap",
         "parts",
         "partition",
+        "plane",
         "generation",
         "coast",
         "files",

@@ -20,13 +20,14 @@ from mesh.generation.well_centered import GOAL, WellCentered, well_center
 from mesh.geometry.sphere import normalize
 from mesh.mesh_request import MeshRequest
 from mesh.plain import plain_count, plain_number
+from mesh.plane.hexagons import hexagon_mesh
 from mesh.validated import remember_validated
 from mesh.voronoi_mesh import VoronoiMesh
 
 
 @dataclass(frozen=True)
 class GeneratedMesh:
-    """A validated mesh on the unit sphere and, if it was made well-centred, what that cost."""
+    """A validated mesh on the unit sphere, or on a plane, and, if it was made well-centred, what that cost."""
 
     mesh: VoronoiMesh
     centring: WellCentered | None = None
@@ -94,6 +95,8 @@ def generate_mesh(
 
     A nested mesh keeps no checkpoint. Raises `MeshError` if the request cannot be met.
     """
+    if is_on_plane(request):
+        return GeneratedMesh(_on_plane(request))
     begin = time.perf_counter()
     if request.nested is None:
         cells_of(request)
@@ -112,6 +115,25 @@ def generate_mesh(
         centring = _well_centered(result, density, limits.since(begin).seconds)
         result = replace(result, points=centring.points, triangles=centring.triangles)
     return GeneratedMesh(mesh_of(result, density), centring)
+
+
+def is_on_plane(request: MeshRequest) -> bool:
+    """Whether the request is for a mesh on a plane; raises `MeshError` where it only says how such a one is to be."""
+    of_plane = (request.periodic, request.hexagons) != (MeshRequest.periodic, MeshRequest.hexagons)
+    if request.plane is None and of_plane:
+        raise MeshError(
+            "--periodic and --hexagons go with --plane LX,LY; give the lengths of the plane, or leave them out"
+        )
+    return request.plane is not None
+
+
+def _on_plane(request: MeshRequest) -> VoronoiMesh:
+    if replace(request, plane=None, periodic=MeshRequest.periodic, hexagons=None) != MeshRequest():
+        raise MeshError("only --periodic and --hexagons go with --plane; leave all else out that tells of the mesh")
+    if request.hexagons is None:
+        raise MeshError("a mesh on a plane needs its hexagons; give --hexagons NX,NY")
+    assert request.plane is not None
+    return hexagon_mesh(request.plane, request.hexagons, request.periodic)
 
 
 def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:

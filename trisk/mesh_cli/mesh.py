@@ -72,6 +72,25 @@ def mesh(
     coast_factor: Annotated[
         float, typer.Option("--coast-factor", help="How many times --coast-width raises the density at the coast.")
     ] = 16.0,
+    plane: Annotated[
+        str | None,
+        typer.Option(
+            "--plane",
+            metavar="LX,LY",
+            help="Make a mesh on a plane of these lengths in metres, in place of the sphere.",
+        ),
+    ] = None,
+    periodic: Annotated[
+        str, typer.Option("--periodic", help="Where the plane repeats itself: xy, x (a channel) or none (a box).")
+    ] = DEFAULTS.periodic,
+    hexagons: Annotated[
+        str | None,
+        typer.Option(
+            "--hexagons",
+            metavar="NX,NY",
+            help="Regular hexagons of the plane: NY rows of NX; LY must be sqrt(3)/2 NY LX/NX.",
+        ),
+    ] = None,
     start: Annotated[
         str | None,
         typer.Option(
@@ -113,10 +132,10 @@ def mesh(
     file_format: FileFormat = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
-    """Generate a spherical centroidal Voronoi mesh."""
+    """Generate a centroidal Voronoi mesh of the sphere, or regular hexagons of a plane."""
     from mesh import MeshError, read_mesh, write_mesh
     from mesh.files.io import least_sizes, require_format
-    from mesh.generation.pipeline import generate_mesh
+    from mesh.generation.pipeline import generate_mesh, is_on_plane
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
     from trisk.arguments.outputs import command_line, require_possible_file
@@ -136,10 +155,20 @@ def mesh(
         density_floor=density_floor,
         density_power=density_power,
         density_smoothing=density_smoothing,
+        plane=None if plane is None else pair_of("--plane", plane),
+        periodic=periodic,
+        hexagons=None if hexagons is None else pair_of("--hexagons", hexagons),
     )
     limits = limits_of(request)
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
+    if is_on_plane(request):
+        if resume or nested is not None or coast is not None or coast_width is not None:
+            raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
+        write_mesh(generate_mesh(request).mesh, output, command_line(), file_format)
+        if not quiet:
+            print_quality(read_mesh(output), str(output))
+        return
     if coast is not None:
         if resume or nested is not None:
             raise MeshError("--resume and --nested do not go with --coast; leave them out")
