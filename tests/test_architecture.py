@@ -28,7 +28,7 @@ ROOMS = {
         "files",
     ],
     "swe": ["", "parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"],
-    "cases": [""],
+    "cases": ["", "plane", "finding"],
     "postprocess": [
         "",
         "runs",

@@ -14,7 +14,8 @@ _PLACES = {
         *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
     ),
     "cases": (
-        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "KelvinWave", "LakeAtRest", "Munk", "Seiche"),
+        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "InertiaGravityWave", "KelvinWave", "LakeAtRest"),
+        *("Munk", "PLANE_CASES", "PlaneCase", "Seiche"),
         *("Stommel", "Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),

@@ -50,10 +50,13 @@ def scvt_mesh(
     density_floor: float = MeshRequest.density_floor,
     density_power: float = MeshRequest.density_power,
     density_smoothing: int = MeshRequest.density_smoothing,
+    plane: tuple[float, float] | None = MeshRequest.plane,
+    periodic: str = MeshRequest.periodic,
+    hexagons: tuple[int, int] | None = MeshRequest.hexagons,
     checkpoint: str | os.PathLike[str] | None = None,
     resume: bool = False,
 ) -> VoronoiMesh:
-    """A validated SCVT on the unit sphere; `mesh.mesh_request.MeshRequest` explains the arguments.
+    """A validated SCVT on the unit sphere, or on a plane; `mesh.mesh_request.MeshRequest` explains the arguments.
 
     `callback` is called with each iterate. `checkpoint` names a file that keeps the best points if the generation
     fails or is interrupted; with `resume`, the same call continues from there. Raises `MeshError` if no such mesh can
@@ -62,7 +65,7 @@ def scvt_mesh(
     if not isinstance(nested, VoronoiMesh | None):
         raise MeshError(f"the mesh to refine is {nested!r}; it must be a VoronoiMesh, such as read_mesh gives")
     request = MeshRequest(
-        cells=None if cells is None and nested is not None else plain_count("the number of cells", cells),
+        cells=None if cells is None and (nested, plane) != (None, None) else plain_count("the number of cells", cells),
         density=density,
         start=start,
         method=method,
@@ -76,6 +79,9 @@ def scvt_mesh(
         density_floor=plain_number("the floor of the density", density_floor),
         density_power=plain_number("the power of the density", density_power),
         density_smoothing=plain_count("the number of passes of smoothing", density_smoothing),
+        plane=plane,
+        periodic=periodic,
+        hexagons=hexagons,
     )
     if checkpoint is None:
         if resume:
@@ -121,9 +127,7 @@ def is_on_plane(request: MeshRequest) -> bool:
     """Whether the request is for a mesh on a plane; raises `MeshError` where it only says how such a one is to be."""
     of_plane = (request.periodic, request.hexagons) != (MeshRequest.periodic, MeshRequest.hexagons)
     if request.plane is None and of_plane:
-        raise MeshError(
-            "--periodic and --hexagons go with --plane LX,LY; give the lengths of the plane, or leave them out"
-        )
+        raise MeshError("--periodic and --hexagons go with --plane LX,LY; give its lengths, or leave them out")
     return request.plane is not None
 
 

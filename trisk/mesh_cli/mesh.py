@@ -77,7 +77,7 @@ def mesh(
         typer.Option(
             "--plane",
             metavar="LX,LY",
-            help="Make a mesh on a plane of these lengths in metres, in place of the sphere.",
+            help="Make a mesh on a plane of these lengths, m, in place of the sphere.",
         ),
     ] = None,
     periodic: Annotated[
@@ -139,6 +139,7 @@ def mesh(
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
     from trisk.arguments.outputs import command_line, require_possible_file
+    from trisk.arguments.pairs import counts_of, pair_of
     from trisk.report.summaries import print_quality, tell_of_centring
 
     request = MeshRequest(
@@ -157,7 +158,7 @@ def mesh(
         density_smoothing=density_smoothing,
         plane=None if plane is None else pair_of("--plane", plane),
         periodic=periodic,
-        hexagons=None if hexagons is None else pair_of("--hexagons", hexagons),
+        hexagons=None if hexagons is None else counts_of("--hexagons", hexagons),
     )
     limits = limits_of(request)
     require_format(file_format, None if cells is None else least_sizes(cells))
@@ -165,9 +166,10 @@ def mesh(
     if is_on_plane(request):
         if resume or nested is not None or coast is not None or coast_width is not None:
             raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
-        write_mesh(generate_mesh(request).mesh, output, command_line(), file_format)
+        on_plane = generate_mesh(request).mesh
+        write_mesh(on_plane, output, command_line(), file_format)
         if not quiet:
-            print_quality(read_mesh(output), str(output))
+            print_quality(on_plane, str(output))
         return
     if coast is not None:
         if resume or nested is not None:
