@@ -22,8 +22,8 @@ class InertiaGravityWave(PlaneCase):
     """A plane inertia-gravity (Poincare) wave on an f-plane that is periodic in both directions, known exactly.
 
     With the phase p = k x + l y - omega t, the surface is a cos(p) above the depth H, and
-    omega^2 = f^2 + g H (k^2 + l^2). It solves the linear equations; the others differ by terms of the square of a / H. One period of the mesh must hold
-    whole waves.
+    omega^2 = f^2 + g H (k^2 + l^2). It solves the linear equations; the others differ by terms of the square of a / H.
+    One period of the mesh must hold whole waves.
     """
 
     name: ClassVar[str] = "inertia-gravity-wave"

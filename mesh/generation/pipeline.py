@@ -167,6 +167,7 @@ def _from_start(
 def _refined(
     coarse: VoronoiMesh, request: MeshRequest, density: Density, limits: Limits, callback: Callback | None
 ) -> ScvtResult:
+    coarse.require_sphere("meshes are refined")
     if has_walls(coarse):
         raise MeshError("the mesh to refine has walls; give one of the whole sphere, and cull what comes of it")
     points, triangles = normalize(coarse.cell_points), coarse.cells_on_vertex

@@ -55,6 +55,7 @@ def film(
     Raises `InputError` where there is no such field, map, kind of film or size, or fewer than two snapshots.
     """
     path = Path(path)
+    run.mesh.require_sphere("films are made")
     _require_size(size)
     require_kind(path, size)
     rows = _rows(run, days)

@@ -119,7 +119,7 @@ def run(
         raise InputError(f"the run is to last {days:g} days; give a number above 0")
     if cells is not None and chosen.radius == 0.0:
         raise InputError(
-            f"{chosen.name} is on a plane, and --cells makes spheres; give --mesh FILE of trisk mesh --plane"
+            f"{chosen.name} is on a plane, and --cells makes spheres; give --mesh (see trisk mesh --plane)"
         )
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
