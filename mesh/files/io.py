@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from mesh.conventions import (
     BY_NAME,
-    COORDINATES,
     DIMENSIONS,
     MESH_VARIABLES,
     MeshOutline,
     MeshVariable,
+    coordinates_on,
     dimension_sizes,
 )
 from mesh.density.record import define_generation, fill_generation, read_generation
@@ -185,7 +185,7 @@ def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: froze
         target = file.createVariable(
             variable.file_name, "i4" if variable.integer else "f8", dimensions, fill_value=False
         )
-        target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
+        target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable, mesh)})
 
 
 def whole_arrays(mesh: VoronoiMesh) -> Slabs:
@@ -215,12 +215,15 @@ def _variables(names: frozenset[str] | None) -> list[MeshVariable]:
     return [variable for variable in MESH_VARIABLES if names is None or variable.name in names]
 
 
-def _coordinates(variable: MeshVariable) -> dict[str, str]:
-    """Attributes by which readers of the CF conventions find the longitude and the latitude of an array's values."""
+def _coordinates(variable: MeshVariable, mesh: MeshOutline) -> dict[str, str]:
+    """Attributes by which readers of the CF conventions find the place of an array's values."""
     kind, *_ = variable.name.split("_")
+    on_a_sphere = mesh.sphere_radius > 0.0
     if kind in STANDARD_NAMES:
-        return {"standard_name": STANDARD_NAMES[kind]}
-    return {"coordinates": COORDINATES[DIMENSIONS[variable.dimensions[0]]]}
+        return {"standard_name": STANDARD_NAMES[kind]} if on_a_sphere else {}
+    if kind in ("x", "y") and not on_a_sphere:
+        return {}
+    return {"coordinates": coordinates_on(mesh)[DIMENSIONS[variable.dimensions[0]]]}
 
 
 def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:

@@ -31,7 +31,7 @@ def compare(
 ) -> None:
     """Compare runs with a solution or with each other.
 
-    Prints error norms and conservation, and draws maps.
+    Prints error norms and conservation, and draws maps where the runs are on a sphere.
     """
     from postprocess.compare.comparison import compare_runs, comparison_record
     from postprocess.figures.compare_maps import write_maps
@@ -44,7 +44,7 @@ def compare(
     comparison = compare_runs(*run_directories, reference=reference, days=days or ())
     if not as_json:
         print_comparison(comparison)
-    maps = write_maps(comparison, folder)
+    maps = write_maps(comparison, folder) if comparison.compared[0].mesh.on_a_sphere else []
     if as_json:
         typer.echo(json.dumps({**comparison_record(comparison), "maps": [str(path) for path in maps]}))
         return

@@ -162,3 +162,5 @@ def test_a_run_is_resumed_and_its_files_say_that_it_is_on_a_plane(tmp_path: Path
     assert (whole / "history.nc").read_bytes() == (parts / "history.nc").read_bytes()
     with netCDF4.Dataset(whole / "history.nc") as file:
         assert (file.on_a_sphere, file.is_periodic, file.x_period) == ("NO", "YES", mesh.x_period)
+        assert file["normal_velocity"].coordinates == "xEdge yEdge"
+        assert "standard_name" not in file["lonCell"].ncattrs()
