@@ -20,6 +20,7 @@ from mesh.mesh_request import MeshRequest
 from mesh.partition.partition import Partition, partition_mesh
 from mesh.parts.sea_cells import cull_mesh
 from mesh.plane.hexagons import hexagon_mesh
+from mesh.plane.periodic import periodic_mesh
 from mesh.regions.find import find_region
 from mesh.regions.region import Region
 from mesh.voronoi_mesh import VoronoiMesh
@@ -41,6 +42,7 @@ __all__ = [
     "mesh_quality",
     "normal_component",
     "partition_mesh",
+    "periodic_mesh",
     "read_mesh",
     "region_mesh",
     "scvt_mesh",

@@ -7,7 +7,16 @@ _PLACES = {
     "mesh": (
         *("MeshError", "MeshRequest", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
         *("build_operators", "cull_mesh", "find_region", "hexagon_mesh", "mesh_from_points", "mesh_quality"),
-        *("normal_component", "partition_mesh", "read_mesh", "region_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *(
+            "normal_component",
+            "partition_mesh",
+            "periodic_mesh",
+            "read_mesh",
+            "region_mesh",
+            "scvt_mesh",
+            "validate_mesh",
+            "write_mesh",
+        ),
     ),
     "swe": (
         *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),

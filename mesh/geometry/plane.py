@@ -68,7 +68,7 @@ class Plane:
 
     def midpoint(self, a: Array, b: Array) -> Array:
         """Half the way (..., 3) to the nearest image."""
-        return self._wrapped(a + 0.5 * self.shortest(b - a))
+        return self.wrapped(a + 0.5 * self.shortest(b - a))
 
     def circumcenter(self, a: Array, b: Array, c: Array) -> Array:
         """Where the perpendicular bisectors (..., 3) of the sides meet."""
@@ -77,7 +77,7 @@ class Plane:
         twice = 2.0 * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
         x = (v[..., 1] * uu - u[..., 1] * vv) / twice
         y = (u[..., 0] * vv - v[..., 0] * uu) / twice
-        return self._wrapped(a + np.stack([x, y, np.zeros_like(x)], axis=-1))
+        return self.wrapped(a + np.stack([x, y, np.zeros_like(x)], axis=-1))
 
     def kite_areas(self, points: Array, edges: Array, cells: Index, sides: Index, corners: Array) -> Array:
         """Each kite is two triangles with a corner in the vertex."""
@@ -128,7 +128,7 @@ class Plane:
         to_middle = self.shortest(middle - points)
         is_short = size < short**2 * dot(to_middle, to_middle)
         across = dot(spoke, right) / np.where(is_short, 1.0, size)
-        return np.where(is_short[:, None], middle, self._wrapped(points + across[:, None] * right))
+        return np.where(is_short[:, None], middle, self.wrapped(points + across[:, None] * right))
 
     def angles(self, points: Array) -> tuple[Array, Array]:
         """Zero, as in files of others."""
@@ -164,7 +164,7 @@ class Plane:
         square = np.clip(2.0 * (points[:, :2] - low) / size - 1.0, -1.0, 1.0)
         return np.column_stack([np.ones(len(points)), square])
 
-    def _wrapped(self, points: Array) -> Array:
+    def wrapped(self, points: Array) -> Array:
         """The images of the points (..., 3) from zero up to the periods."""
         for axis, period in self._steps:
             value = points[..., axis] % period
