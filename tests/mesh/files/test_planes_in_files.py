@@ -87,6 +87,21 @@ def test_positions_may_be_any_images(tmp_path: Path) -> None:
     assert "replaced" not in str(warned[0].message)
 
 
+def test_coordinates_in_single_precision_are_read(tmp_path: Path) -> None:
+    """Rounded relative to the extent of the plane, not to one."""
+    write_planar_file(tmp_path / "hexagons.nc", 60, 60, 1e3)
+    with netCDF4.Dataset(tmp_path / "hexagons.nc") as source, netCDF4.Dataset(tmp_path / "single.nc", "w") as target:
+        target.setncatts({name: source.getncattr(name) for name in source.ncattrs()})
+        for name, dimension in source.dimensions.items():
+            target.createDimension(name, len(dimension))
+        for name, values in source.variables.items():
+            kind = np.float32 if name in ("xCell", "yCell", "zCell") else values.dtype
+            target.createVariable(name, kind, values.dimensions)[:] = values[:]
+    with pytest.warns(MeshWarning, match="coordinates are in single precision, so that all metrics"):
+        mesh = read_mesh(tmp_path / "single.nc")
+    np.testing.assert_allclose(mesh.area_cell, ROW * 1e6, rtol=1e-4)
+
+
 def test_damage_is_told(tmp_path: Path) -> None:
     path = tmp_path / "plane.nc"
     write_mesh(hexagon_mesh((6e3, 4e3 * ROW), (6, 4)), path)

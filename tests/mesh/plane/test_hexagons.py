@@ -9,6 +9,7 @@ from mesh import MeshError, VoronoiMesh, hexagon_mesh, mesh_quality, validate_me
 from mesh.discrete.operators import normal_component, velocity_at_cells
 from mesh.discrete.walls import wall_edges
 from mesh.integrals.quadrature import cell_means
+from mesh.parts.culling import culled
 
 ROW = 0.5 * np.sqrt(3.0)
 DISTANCE = 5e3
@@ -54,6 +55,16 @@ def test_walls_stand_where_there_is_no_period(periodic: str, walls: int) -> None
     mesh = plane(6, 4, periodic)
     assert len(wall_edges(mesh)) == walls
     assert (mesh.x_period > 0.0, mesh.y_period > 0.0) == ("x" in periodic, "y" in periodic)
+
+
+def test_a_periodic_plane_may_have_islands() -> None:
+    whole = plane(6, 6, "xy")
+    kept = ~np.isin(np.arange(36), [7, 8, 22])
+    island = culled(whole, kept)
+    assert max(validate_mesh(island).values()) < 1e-14
+    assert len(wall_edges(island)) == 10 + 6
+    belt = culled(whole, np.arange(36) < 18)
+    assert max(validate_mesh(belt).values()) < 1e-14
 
 
 def test_positions_lie_within_periods_and_centres_in_the_plane() -> None:

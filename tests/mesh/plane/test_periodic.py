@@ -21,6 +21,7 @@ from mesh.arrays import Array
 from mesh.conventions import MESH_VARIABLES
 from mesh.discrete.operators import normal_component, velocity_at_cells
 from mesh.integrals.plane_centroids import plane_centroids
+from mesh.integrals.quadrature import cell_means
 from swe import ShallowWaterModel, State
 from swe.equations.consistent import Consistent
 from swe.equations.schemes import Ringler2010, Scheme
@@ -67,6 +68,14 @@ def test_seams_cannot_be_seen(mesh: VoronoiMesh) -> None:
         np.testing.assert_allclose(getattr(moved, name), getattr(mesh, name), rtol=0, atol=1e-9 * scale)
     way = plane_centroids(mesh) - mesh.cell_points
     np.testing.assert_allclose(plane_centroids(moved) - moved.cell_points, way, atol=1e-4)
+
+
+def test_centroids_are_the_means_of_positions(mesh: VoronoiMesh) -> None:
+    centroids = plane_centroids(mesh)
+    for axis in range(2):
+        means = cell_means(mesh, lambda *places, axis=axis: places[axis])
+        np.testing.assert_allclose(centroids[:, axis], means, rtol=0, atol=1e-6)
+    assert np.abs(centroids - mesh.cell_points).max() > 1e3
 
 
 def test_the_generators_of_hexagons_give_the_hexagons() -> None:

@@ -144,6 +144,12 @@ def test_terms_know_the_place_in_metres() -> None:
     np.testing.assert_allclose(acceleration(mesh, still, 0.0)[inner], expected[inner], rtol=1e-12, atol=1e-20)
 
 
+def test_nothing_flows_through_walls_at_the_start(mesh: VoronoiMesh) -> None:
+    velocity = Hump().state_on(mesh).normal_velocity
+    assert not velocity[wall_edges(mesh)].any()
+    assert np.abs(velocity).max() > 5.0
+
+
 def test_a_wrong_cell_is_told_in_metres() -> None:
     mesh = plane("xy")
     state = moving_state(mesh)
