@@ -2,23 +2,28 @@
 
 from cases.base import Case, parameter
 from cases.basins import KelvinWave, Seiche
+from cases.finding.registry import CASES, PLANE_CASES, find_case
 from cases.galewsky import Galewsky
 from cases.gyres import DoubleGyre, Stommel
 from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
 from cases.munk import Munk
-from cases.registry import CASES, find_case
+from cases.plane.base import PlaneCase
+from cases.plane.waves import InertiaGravityWave
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 
 __all__ = [
     "CASES",
+    "PLANE_CASES",
     "Case",
     "DoubleGyre",
     "Galewsky",
     "Hollingsworth",
+    "InertiaGravityWave",
     "KelvinWave",
     "LakeAtRest",
     "Munk",
+    "PlaneCase",
     "Seiche",
     "Stommel",
     "Williamson1",

@@ -79,6 +79,9 @@ class Case(Shown, ABC):
     gravity: float = parameter(GRAVITY, "m/s2", "Acceleration of gravity")
     rotation_rate: float = parameter(ROTATION_RATE, "1/s", "Angular velocity of the sphere")
 
+    _bounded: ClassVar[tuple[str, ...]] = ("radius", "gravity")
+    """Parameters that must lie between `SMALLEST` and `LARGEST`."""
+
     def __init_subclass__(cls) -> None:
         super().__init_subclass__()
         # A dataclass writes a `__repr__` of its own where it finds none in the class itself.
@@ -110,8 +113,8 @@ class Case(Shown, ABC):
         for name, value in self.parameters().items():
             if isinstance(value, float) and not math.isfinite(value):
                 raise InputError(f"{name} is {value}; give a finite number")
-        self.require_positive("radius", "gravity")
-        for name in ("radius", "gravity"):
+        self.require_positive(*self._bounded)
+        for name in self._bounded:
             if not SMALLEST < self.parameters()[name] < LARGEST:
                 raise InputError(
                     f"{name} is {self.parameters()[name]:g}; it must be between {SMALLEST:g} and {LARGEST:g}"
@@ -182,7 +185,7 @@ class Case(Shown, ABC):
                 f"the mesh has a radius of {mesh.sphere_radius:.10g} m, but {self.name} one of {self.radius:.10g} m; "
                 f"scale the mesh first, mesh.scaled({self.radius:.10g})"
             )
-        streamfunction = self.evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
+        streamfunction = self.evaluated(self.streamfunction, time)(*mesh.coordinates("vertex"))
         return State(
             sample_cells(mesh, self.evaluated(self.thickness, time), sampling),
             normal_velocity_from_streamfunction(mesh, streamfunction),
@@ -198,7 +201,7 @@ class Case(Shown, ABC):
 
     def coriolis_on(self, mesh: VoronoiMesh) -> Array:
         """Coriolis parameter at vertices (n_vertices,), 1/s."""
-        return self.evaluated(self.coriolis)(mesh.lon_vertex, mesh.lat_vertex)
+        return self.evaluated(self.coriolis)(*mesh.coordinates("vertex"))
 
     def parameters(self) -> dict[str, float]:
         """Parameters by name."""

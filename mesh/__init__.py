@@ -1,4 +1,4 @@
-"""Spherical centroidal Voronoi meshes: generation, topology, metrics, TRiSK operators, files and quality."""
+"""Spherical and planar centroidal Voronoi meshes: generation, topology, metrics, TRiSK operators, files and quality."""
 
 import os
 
@@ -19,6 +19,8 @@ from mesh.generation.pipeline import scvt_mesh
 from mesh.mesh_request import MeshRequest
 from mesh.partition.partition import Partition, partition_mesh
 from mesh.parts.sea_cells import cull_mesh
+from mesh.plane.hexagons import hexagon_mesh
+from mesh.plane.periodic import periodic_mesh
 from mesh.regions.find import find_region
 from mesh.regions.region import Region
 from mesh.voronoi_mesh import VoronoiMesh
@@ -35,10 +37,12 @@ __all__ = [
     "build_operators",
     "cull_mesh",
     "find_region",
+    "hexagon_mesh",
     "mesh_from_points",
     "mesh_quality",
     "normal_component",
     "partition_mesh",
+    "periodic_mesh",
     "read_mesh",
     "region_mesh",
     "scvt_mesh",

@@ -42,7 +42,15 @@ class MeshOutline(MeshSizes, Protocol):
 
     @property
     def sphere_radius(self) -> float:
-        """Radius of the sphere, metres."""
+        """Radius of the sphere, metres; zero on a plane."""
+
+    @property
+    def x_period(self) -> float:
+        """Length after which a plane repeats itself in x, metres; zero if it does not."""
+
+    @property
+    def y_period(self) -> float:
+        """The same in y."""
 
     @property
     def density_name(self) -> str:
@@ -151,8 +159,11 @@ MESH_VARIABLES: tuple[MeshVariable, ...] = (
 
 BY_NAME = {variable.name: variable for variable in MESH_VARIABLES}
 
-COORDINATES = {
-    DIMENSIONS[dimension]: " ".join(BY_NAME[f"{angle}_{place}"].file_name for angle in ("lon", "lat"))
-    for place, dimension in (("cell", "n_cells"), ("edge", "n_edges"), ("vertex", "n_vertices"))
-}
-"""Coordinates of what lies on each dimension of a file, as the CF conventions name them."""
+
+def coordinates_on(mesh: MeshOutline) -> dict[str, str]:
+    """Coordinates of what lies on each dimension of the file of a mesh, as the CF conventions name them."""
+    names = ("lon", "lat") if mesh.sphere_radius > 0.0 else ("x", "y")
+    return {
+        DIMENSIONS[dimension]: " ".join(BY_NAME[f"{name}_{place}"].file_name for name in names)
+        for place, dimension in (("cell", "n_cells"), ("edge", "n_edges"), ("vertex", "n_vertices"))
+    }

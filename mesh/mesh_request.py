@@ -51,6 +51,13 @@ class MeshRequest:
         Variable of a density file.
     density_floor, density_power, density_smoothing
         What is done to the field of a density file (see `mesh.density.gridded.Shaping`).
+    plane
+        Lengths along x and y, metres, of a plane in place of the sphere.
+    periodic
+        Directions in which the plane repeats itself: "xy", "x", or "none"; walls stand at the other ends.
+    hexagons
+        Numbers along x and y of the regular hexagons of the plane (see `mesh.plane.hexagons.hexagon_mesh`), with which
+        nothing else goes.
     """
 
     cells: int | None = None
@@ -67,6 +74,9 @@ class MeshRequest:
     density_floor: float = 0.0
     density_power: float = 1.0
     density_smoothing: int = 0
+    plane: tuple[float, float] | None = None
+    periodic: str = "xy"
+    hexagons: tuple[int, int] | None = None
 
     def _title_and_rows(self) -> tuple[str, Rows]:
         """Cells, density and method, and of all others those that are not the default."""

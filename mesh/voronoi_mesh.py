@@ -6,14 +6,18 @@ dimensions, units and meaning. In memory, indices count from 0 and -1 fills what
 
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, Signs
+from mesh.errors import MeshError
 from mesh.graphs import count_seas_and_coasts
 from mesh.shown import Rows, Shown, in_kilometres, in_words
 from mesh.validated import is_validated, remember_validated
+
+Place = Literal["cell", "edge", "vertex"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +89,8 @@ class Topology:
 class Metrics:
     """Positions and sizes of the entities: lengths in units of the sphere's radius as stored, angles in radians.
 
+    On a plane lengths are in metres, z, longitudes and latitudes are zero, and angles count from the x axis.
+
     `kite_areas_on_vertex[v, j]` is the part of cell `cells_on_vertex[v, j]` in triangle v. The tangential velocity
     at edge e is the sum of `weights_on_edge[e, j]` times the normal velocity at `edges_on_edge[e, j]`.
     """
@@ -115,7 +121,10 @@ class Metrics:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class VoronoiMesh(Shown, Metrics, Topology):
-    """A spherical Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
+    """A Voronoi mesh with everything a C-grid scheme needs; see `Topology` and `Metrics`.
+
+    It is on a sphere, or, with a `sphere_radius` of zero, on a plane that repeats itself after `x_period` and
+    `y_period` metres, where these are not zero (`mesh.geometry.surface`).
 
     `mesh_density` holds the density at the centres; `density_name` says which one it is (see `mesh.density.named`)
     where that is known, and `density_source` where it is found (see `mesh.density.record`) where it comes from a file.
@@ -127,11 +136,14 @@ class VoronoiMesh(Shown, Metrics, Topology):
     density_name: str = ""
     density_source: str = ""
     fixed_cells: NDArray[np.bool_] | None = None
+    x_period: float = 0.0
+    y_period: float = 0.0
 
     def _title_and_rows(self) -> tuple[str, Rows]:
         rows = {
             "edges, vertices": f"{self.n_edges}, {self.n_vertices}",
-            "radius": "" if self.sphere_radius == 1.0 else in_kilometres(self.sphere_radius),
+            "surface": "" if self.on_a_sphere else surface_in_words(self),
+            "radius": "" if not self.on_a_sphere or self.sphere_radius == 1.0 else in_kilometres(self.sphere_radius),
             "density": in_words(self.density_name),
             "spacing": _spacing_in_words(self),
             "sigma": _sigma_in_words(self),
@@ -140,6 +152,29 @@ class VoronoiMesh(Shown, Metrics, Topology):
             "held": "" if self.fixed_cells is None else f"{np.count_nonzero(self.fixed_cells)} generators",
         }
         return f"VoronoiMesh of {self.n_cells} cells", rows
+
+    @property
+    def on_a_sphere(self) -> bool:
+        """Whether the mesh is on a sphere, and not on a plane."""
+        return self.sphere_radius > 0.0
+
+    @property
+    def length_unit(self) -> float:
+        """What lengths are divided by for geometry: the radius of the sphere, one on a plane."""
+        return self.sphere_radius if self.on_a_sphere else 1.0
+
+    def coordinates(self, place: Place) -> tuple[Array, Array]:
+        """What functions of the place take at all cells, edges or vertices: longitude and latitude, or x and y.
+
+        Radians on a sphere, metres on a plane.
+        """
+        first, second = ("lon", "lat") if self.on_a_sphere else ("x", "y")
+        return getattr(self, f"{first}_{place}"), getattr(self, f"{second}_{place}")
+
+    def require_sphere(self, what: str) -> None:
+        """Raise `MeshError` on a plane; `what` begins the sentence."""
+        if not self.on_a_sphere:
+            raise MeshError(f"{what} for meshes on a sphere alone, and this one is on a plane")
 
     @property
     def cell_points(self) -> Array:
@@ -157,8 +192,13 @@ class VoronoiMesh(Shown, Metrics, Topology):
         return np.stack([self.x_vertex, self.y_vertex, self.z_vertex], axis=1)
 
     def scaled(self, radius: float) -> "VoronoiMesh":
-        """The same mesh on a sphere of another radius, in metres."""
-        factor = radius / self.sphere_radius
+        """The same mesh on a sphere of another radius, in metres.
+
+        Raises `MeshError` on a plane, but for a radius of zero, which leaves the mesh as it is.
+        """
+        factor = scale_factor(self.sphere_radius, radius)
+        if factor is None:
+            return self
         lengths = {name: getattr(self, name) * factor for name in LENGTH_NAMES}
         areas = {name: getattr(self, name) * factor**2 for name in AREA_NAMES}
         scaled = replace(self, sphere_radius=float(radius), **lengths, **areas)
@@ -167,11 +207,31 @@ class VoronoiMesh(Shown, Metrics, Topology):
         return scaled
 
 
+def scale_factor(old_radius: float, radius: float) -> float | None:
+    """What lengths are multiplied by on a sphere of another radius; None on a plane, whose radius is zero.
+
+    Raises `MeshError` where one is a plane and the other is not.
+    """
+    if (old_radius > 0.0) != (radius > 0.0):
+        here, wanted = ("a sphere", "a plane") if old_radius > 0.0 else ("a plane", "a sphere")
+        raise MeshError(f"the mesh is on {here}, but one on {wanted} is asked for; take another mesh")
+    return radius / old_radius if old_radius > 0.0 else None
+
+
 def mesh_in_words(mesh: VoronoiMesh) -> str:
     """Cells, mean spacing and sphere, for a line about what stands on the mesh."""
     spacing = _spacings(mesh)
     mean = f", mean spacing {_length(mesh, spacing.mean())}" if spacing.size else ""
-    return f"{mesh.n_cells} cells on {sphere_in_words(mesh.sphere_radius)}{mean}"
+    return f"{mesh.n_cells} cells on {surface_in_words(mesh)}{mean}"
+
+
+def surface_in_words(mesh: VoronoiMesh) -> str:
+    """What a mesh is on, as part of a sentence."""
+    if mesh.on_a_sphere:
+        return sphere_in_words(mesh.sphere_radius)
+    periods = {"x": mesh.x_period, "y": mesh.y_period}
+    repeated = " and ".join(f"{in_kilometres(period)} in {axis}" for axis, period in periods.items() if period > 0.0)
+    return f"a plane that repeats itself after {repeated}" if repeated else "a plane"
 
 
 def sphere_in_words(radius: float) -> str:
@@ -187,7 +247,8 @@ def coast_in_words(mesh: VoronoiMesh) -> str:
     seas, coasts = count_seas_and_coasts(mesh.n_cells, mesh.cells_on_edge, mesh.vertices_on_edge, at_boundary)
     seas_in_words = "1 sea" if seas == 1 else f"{seas} seas"
     coasts_in_words = "1 coast" if coasts == 1 else f"{coasts} coasts"
-    return f"{seas_in_words}, {coasts_in_words}; {share_of_sphere(mesh.area_cell, mesh.sphere_radius)}"
+    share = f"; {share_of_sphere(mesh.area_cell, mesh.sphere_radius)}" if mesh.on_a_sphere else ""
+    return f"{seas_in_words}, {coasts_in_words}{share}"
 
 
 def share_of_sphere(areas: Array, radius: float) -> str:
@@ -214,7 +275,7 @@ def _spacing_in_words(mesh: VoronoiMesh) -> str:
 
 def _sigma_in_words(mesh: VoronoiMesh) -> str:
     """Mean and least sigma, as `mesh.discrete.quality` has them, from the distances that the mesh holds."""
-    chords = np.sin(mesh.dc_edge / (2.0 * mesh.sphere_radius))
+    chords = np.sin(mesh.dc_edge / (2.0 * mesh.sphere_radius)) if mesh.on_a_sphere else mesh.dc_edge.copy()
     chords[mesh.cells_on_edge.min(axis=1) < 0] = np.nan
     shortest, longest = np.full((2, mesh.n_cells), np.nan)
     for place in range(mesh.max_edges):

@@ -6,15 +6,25 @@ from typing import Any
 _PLACES = {
     "mesh": (
         *("MeshError", "MeshRequest", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
-        *("build_operators", "cull_mesh", "find_region", "mesh_from_points", "mesh_quality", "normal_component"),
-        *("partition_mesh", "read_mesh", "region_mesh", "scvt_mesh", "validate_mesh", "write_mesh"),
+        *("build_operators", "cull_mesh", "find_region", "hexagon_mesh", "mesh_from_points", "mesh_quality"),
+        *(
+            "normal_component",
+            "partition_mesh",
+            "periodic_mesh",
+            "read_mesh",
+            "region_mesh",
+            "scvt_mesh",
+            "validate_mesh",
+            "write_mesh",
+        ),
     ),
     "swe": (
         *("Callback", "Forcing", "InputError", "LinearDrag", "QuadraticDrag", "RunError", "ShallowWaterModel"),
         *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
     ),
     "cases": (
-        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "KelvinWave", "LakeAtRest", "Munk", "Seiche"),
+        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "InertiaGravityWave", "KelvinWave", "LakeAtRest"),
+        *("Munk", "PLANE_CASES", "PlaneCase", "Seiche"),
         *("Stommel", "Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),

@@ -19,12 +19,13 @@ ROOMS = {
         "overlap",
         "parts",
         "partition",
+        "plane",
         "generation",
         "coast",
         "files",
     ),
     "swe": ("parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"),
-    "cases": (),
+    "cases": ("plane", "finding"),
     "postprocess": (
         "runs",
         "reference",
@@ -52,7 +53,7 @@ POINTS: tuple[Room, ...] = (
     ("mesh", "files"),
 )
 THICKNESS: tuple[Room, ...] = (
-    ("cases", ""),
+    ("cases", "finding"),
     ("swe", "run"),
     ("swe", "equations"),
     ("swe", "tiles"),

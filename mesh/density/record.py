@@ -64,6 +64,8 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
         return None, f"unknown, since the density was {what}"
     if np.ptp(mesh.mesh_density) == 0.0:
         return uniform, ""
+    if not mesh.on_a_sphere:
+        return None, "unknown, since the density on a plane is known where it is uniform alone"
     if not (np.isfinite(mesh.mesh_density).all() and mesh.mesh_density.min() > 0.0):
         return None, "unknown, since the density at the centres is not positive and finite everywhere"
     if mesh.boundary_vertex.any():

@@ -9,6 +9,7 @@ from mesh.arrays import Array
 from mesh.discrete.metrics import edge_angles
 from mesh.geometry.angles import about_zero
 from mesh.geometry.sphere import dot
+from mesh.geometry.surface import surface_of
 from mesh.voronoi_mesh import Metrics, VoronoiMesh
 
 PLURALS = {"cell": "cells", "edge": "edges", "vertex": "vertices"}
@@ -37,16 +38,17 @@ class Difference:
 
 
 def metric_differences(mesh: VoronoiMesh, exact: Metrics) -> Iterator[Difference]:
-    """Every metric of `mesh` but the angles of edges beside `exact`, that of its generators on the unit sphere.
+    """Every metric of `mesh` but the angles of edges beside `exact`, in lengths of its unit, that of its generators.
 
     The local size of a vertex is its distance to the cells; that of an edge is the largest of its own and its
     vertices'. What is not finite differs by infinity.
     """
-    radius = mesh.sphere_radius
+    radius, surface = mesh.length_unit, surface_of(mesh)
     size = _local_sizes(mesh, exact)
     vertex, edge = size["vertex"][:, None], size["edge"][:, None]
     for place in ("edge", "vertex"):
-        apart = np.sqrt(sum(_difference(mesh, exact, f"{axis}_{place}", radius) ** 2 for axis in "xyz"))
+        way = surface.shortest(np.stack([_difference(mesh, exact, f"{axis}_{place}", radius) for axis in "xyz"], 1))
+        apart = np.sqrt(dot(way, way))
         names = tuple(f"{axis}_{place}" for axis in "xyz")
         name = place.capitalize()
         yield _relative(f"x{name}, y{name} or z{name}", names, place, apart / size[place])
@@ -84,13 +86,14 @@ def angles_in_place(mesh: VoronoiMesh, exact: Metrics) -> Array:
     cells, edges, vertices = (
         np.stack([getattr(exact, f"{axis}_{place}") for axis in "xyz"], axis=1) for place in ("cell", "edge", "vertex")
     )
-    return edge_angles(cells, edges, vertices, mesh, mesh.lon_edge, mesh.lat_edge)
+    return edge_angles(surface_of(mesh), cells, edges, vertices, mesh, mesh.lon_edge, mesh.lat_edge)
 
 
 def _local_sizes(mesh: VoronoiMesh, exact: Metrics) -> dict[str, Array]:
     first = mesh.cells_on_vertex[:, 0]
     cells = np.where(first >= 0, first, mesh.cells_on_vertex.max(axis=1))
     spoke = np.stack([getattr(exact, f"{axis}_vertex") - getattr(exact, f"{axis}_cell")[cells] for axis in "xyz"], 1)
+    spoke = surface_of(mesh).shortest(spoke)
     vertex = np.sqrt(dot(spoke, spoke))
     edge = np.maximum(exact.dc_edge, vertex[mesh.vertices_on_edge].max(axis=1))
     return {"cell": np.sqrt(exact.area_cell), "edge": edge, "vertex": vertex}

@@ -40,42 +40,49 @@ EDGE_FAULTS = (
 )
 
 
-def validate_topology(mesh: Topology) -> None:
+def validate_topology(mesh: Topology, handles: int = 0) -> None:
     """Check shapes, index ranges, and that rings, pairs and triangles agree and are in order.
 
-    Raises `MeshError`.
+    The mesh lies on a sphere, or on a surface of so many `handles` (`mesh.geometry.surface`). Raises `MeshError`.
     """
-    _check_shapes(mesh)
+    _check_shapes(mesh, handles)
     _check_ranges(mesh)
     _check_rings(mesh)
     _check_vertices(mesh)
     _check_edges(mesh)
     if has_walls(mesh):
-        _require_part_of_sphere(mesh)
+        _require_part_of_surface(mesh, handles)
 
 
-def require_closed(n_cells: int, n_edges: int, n_vertices: int) -> None:
-    """Raise `MeshError` unless these numbers of cells, edges and vertices close a sphere with triangles."""
-    if n_vertices != 2 * n_cells - 4 or n_edges != 3 * n_cells - 6:
+def require_closed(n_cells: int, n_edges: int, n_vertices: int, handles: int = 0) -> None:
+    """Raise `MeshError` unless these numbers of cells, edges and vertices close a surface with triangles.
+
+    That is a sphere, or one with so many `handles`.
+    """
+    edges, vertices = 3 * n_cells - 6 + 6 * handles, 2 * n_cells - 4 + 4 * handles
+    if n_vertices != vertices or n_edges != edges:
+        closed = "periodic plane" if handles else "sphere"
         raise MeshError(
-            f"{n_cells} cells, {n_edges} edges and {n_vertices} vertices do not close a sphere: "
-            f"{n_cells} cells need {3 * n_cells - 6} edges and {2 * n_cells - 4} vertices; "
+            f"{n_cells} cells, {n_edges} edges and {n_vertices} vertices do not close a {closed}: "
+            f"{n_cells} cells need {edges} edges and {vertices} vertices; "
             "only meshes with walls, which cellsOnEdge and cellsOnVertex mark by 0, may have others"
         )
 
 
-def _require_part_of_sphere(mesh: Topology) -> None:
-    """Raise `MeshError` unless a mesh with walls, of which all else is right, lies on a sphere: no handles."""
+def _require_part_of_surface(mesh: Topology, handles: int) -> None:
+    """Raise `MeshError` unless a mesh with walls, of which all else is right, has no more than so many `handles`."""
     seas, coasts = seas_and_coasts(mesh)
-    if mesh.n_vertices - mesh.n_edges + mesh.n_cells != 2 * seas - coasts:
+    beyond = 2 * seas - coasts - (mesh.n_vertices - mesh.n_edges + mesh.n_cells)
+    if beyond % 2 or not 0 <= beyond <= 2 * handles:
+        surface = "periodic plane" if handles else "sphere"
         raise MeshError(
-            f"{mesh.n_cells} cells, {mesh.n_edges} edges and {mesh.n_vertices} vertices are no part of a sphere: on "
+            f"{mesh.n_cells} cells, {mesh.n_edges} edges and {mesh.n_vertices} vertices are no part of a {surface}: on "
             f"one, {seas} separate seas with {coasts} coasts have "
             f"{2 * seas - coasts + mesh.n_edges - mesh.n_cells} vertices; correct the file"
         )
 
 
-def _check_shapes(mesh: Topology) -> None:
+def _check_shapes(mesh: Topology, handles: int) -> None:
     sizes = dimension_sizes(mesh)
     for variable in MESH_VARIABLES:
         if variable.integer:
@@ -84,7 +91,7 @@ def _check_shapes(mesh: Topology) -> None:
             if shape != expected:
                 raise MeshError(f"{variable.file_name} has shape {shape} instead of {expected}")
     if not has_walls(mesh):
-        require_closed(mesh.n_cells, mesh.n_edges, mesh.n_vertices)
+        require_closed(mesh.n_cells, mesh.n_edges, mesh.n_vertices, handles)
 
 
 def _check_ranges(mesh: Topology) -> None:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, by_blocks, row_loop, sum_by_index
 from mesh.discrete.walls import boundary_vertices, closed_mesh, has_walls, wall_edges
+from mesh.geometry.surface import surface_of
 from mesh.voronoi_mesh import VoronoiMesh
 
 NONE: Index = np.zeros(0, np.intp)
@@ -22,10 +23,11 @@ def identity_residuals(mesh: VoronoiMesh) -> dict[str, float]:
     """Residuals of the discrete identities of Thuburn et al. (2009) and Ringler et al. (2010)."""
     if has_walls(mesh):
         return _residuals_of_sea(mesh)
-    sphere = 4.0 * np.pi * mesh.sphere_radius**2
+    surface = surface_of(mesh)
+    whole = surface.area * mesh.length_unit**2
     return {
-        "sum of areaCell = area of the sphere": abs(mesh.area_cell.sum() / sphere - 1.0),
-        "sum of areaTriangle = area of the sphere": abs(mesh.area_triangle.sum() / sphere - 1.0),
+        f"sum of areaCell = area of the {surface.name}": abs(mesh.area_cell.sum() / whole - 1.0),
+        f"sum of areaTriangle = area of the {surface.name}": abs(mesh.area_triangle.sum() / whole - 1.0),
         **_residuals_within(mesh),
     }
 

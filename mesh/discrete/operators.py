@@ -14,6 +14,8 @@ from scipy.sparse import coo_array, csr_array
 from mesh.arrays import Array, Index
 from mesh.discrete.sides import Sides, sides_of_cells
 from mesh.discrete.walls import closed_mesh, shares_of_circulation
+from mesh.geometry.surface import surface_of
+from mesh.geometry.vectors import nearest_image
 from mesh.shown import Rows, Shown, in_words
 from mesh.voronoi_mesh import VoronoiMesh, coast_in_words, mesh_in_words
 
@@ -179,15 +181,15 @@ def normal_velocity_from_streamfunction(mesh: VoronoiMesh, streamfunction: Array
 
 def _velocity_of_neighbours(mesh: VoronoiMesh, velocity: Array, known: NDArray[np.bool_], edge: int) -> float:
     """The velocity along the normal of an edge, the mean of those of its two cells by least squares."""
-    centers = mesh.cell_points / mesh.sphere_radius
-    normals = centers[mesh.cells_on_edge[:, 1]] - centers[mesh.cells_on_edge[:, 0]]
+    centers, surface = mesh.cell_points / mesh.length_unit, surface_of(mesh)
+    normals = surface.shortest(centers[mesh.cells_on_edge[:, 1]] - centers[mesh.cells_on_edge[:, 0]])
     of_cells = []
     for cell in mesh.cells_on_edge[edge]:
         edges = mesh.edges_on_cell[cell, : mesh.n_edges_on_cell[cell]]
         edges = edges[known[edges]]
         units = normals[edges] / np.linalg.norm(normals[edges], axis=1)[:, None]
-        # The point itself, along which nothing moves, makes the solution one in the tangent plane.
-        rows, values = np.vstack([units, centers[cell]]), np.append(velocity[edges], 0.0)
+        # The normal of the surface, along which nothing moves, makes the solution one in the tangent plane.
+        rows, values = np.vstack([units, surface.outward(centers[cell])]), np.append(velocity[edges], 0.0)
         of_cells.append(np.linalg.lstsq(rows, values, rcond=None)[0])
     unit = normals[edge] / np.linalg.norm(normals[edge])
     return float(np.mean(of_cells, axis=0) @ unit)
@@ -195,6 +197,8 @@ def _velocity_of_neighbours(mesh: VoronoiMesh, velocity: Array, known: NDArray[n
 
 def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array, Array]:
     """Zonal and meridional velocity at cell centres (n_cells,), from normal velocities (n_edges,).
+
+    On a plane they are along x and along y.
 
     Least squares over the edges of each cell, the edges' normals projected onto the cell's tangent plane:
     exact for a uniform flow in the plane. The normal of a wall points from the cell to the edge or back.
@@ -208,6 +212,8 @@ def velocity_at_cells(mesh: VoronoiMesh, normal_velocity: Array) -> tuple[Array,
         mesh.edge_points,
         mesh.lon_cell,
         mesh.lat_cell,
+        surface_of(mesh).periods,
+        surface_of(mesh).is_flat,
     )
 
 
@@ -227,6 +233,8 @@ def _velocity_at_cells(
     edge_points: Array,
     longitude: Array,
     latitude: Array,
+    periods: Array,
+    is_flat: bool,
 ) -> tuple[Array, Array]:
     zonal, meridional = np.empty(len(points)), np.empty(len(points))
     for c in numba.prange(len(points)):
@@ -240,9 +248,13 @@ def _velocity_at_cells(
             x = _end(points, edge_points, second, edge, 0) - _end(points, edge_points, first, edge, 0)
             y = _end(points, edge_points, second, edge, 1) - _end(points, edge_points, first, edge, 1)
             z = _end(points, edge_points, second, edge, 2) - _end(points, edge_points, first, edge, 2)
+            if is_flat:
+                x, y, z = nearest_image((x, y, z), periods)
             length = np.sqrt(x * x + y * y + z * z)
             eastward = (cos_lon * y - sin_lon * x) / length
             northward = (cos_lat * z - sin_lat * (cos_lon * x + sin_lon * y)) / length
+            if is_flat:
+                eastward, northward = x / length, y / length
             ee += eastward * eastward
             en += eastward * northward
             nn += northward * northward

@@ -9,8 +9,10 @@ from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
 from mesh.discrete.walls import has_walls
-from mesh.geometry.sphere import arc_length, dot, mean_spacing, normalize
+from mesh.geometry.sphere import arc_length, dot, normalize
+from mesh.geometry.surface import surface_of
 from mesh.integrals.moments import masses_and_moments
+from mesh.integrals.plane_centroids import plane_centroids
 from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
 from mesh.shown import Rows, Shown
 from mesh.triangulation.moving import Triangulation
@@ -94,11 +96,14 @@ def _numbers_or_one(values: Array) -> Array:
 
 
 def edge_chords(mesh: VoronoiMesh) -> Array:
-    """Straight distance between the two cells of each edge (n_edges,), on the unit sphere; no number at a wall."""
-    points = mesh.cell_points / mesh.sphere_radius
+    """Straight distance between the two cells of each edge (n_edges,); no number at a wall.
+
+    On the unit sphere, or in metres on a plane.
+    """
+    points, surface = mesh.cell_points / mesh.length_unit, surface_of(mesh)
 
     def lengths(cells: Index) -> Array:
-        difference = points[cells[:, 1]] - points[cells[:, 0]]
+        difference = surface.shortest(points[cells[:, 1]] - points[cells[:, 0]])
         return np.where(cells.min(axis=1) < 0, np.nan, np.sqrt(dot(difference, difference)))
 
     return by_blocks(lengths, mesh.cells_on_edge)
@@ -162,18 +167,30 @@ def centroid_offsets(mesh: VoronoiMesh, density: Density) -> Array:
 
 
 def _centroid_distances(mesh: VoronoiMesh, density: Density) -> tuple[Array, float]:
-    """Distances (n_cells,) from generators to centroids, and the mean spacing, both on the unit sphere."""
-    points, spacing = normalize(mesh.cell_points), mean_spacing(mesh.n_cells)
+    """Distances (n_cells,) from generators to centroids, and the mean spacing, both on the unit sphere or the plane."""
+    surface = surface_of(mesh)
+    area = float(mesh.area_cell.sum()) / mesh.length_unit**2 if has_walls(mesh) else surface.area
+    distances = _ways_to_centroids(mesh, density) if mesh.on_a_sphere else _ways_to_plane_centroids(mesh)
+    return distances, surface.mean_spacing(mesh.n_cells, area)
+
+
+def _ways_to_plane_centroids(mesh: VoronoiMesh) -> Array:
+    """Distances (n_cells,) of generators from the centroids of their cells in a plane, under uniform density."""
+    return surface_of(mesh).distance(mesh.cell_points, plane_centroids(mesh))
+
+
+def _ways_to_centroids(mesh: VoronoiMesh, density: Density) -> Array:
+    """Distances (n_cells,), radians, of generators from the constrained centroids of their cells on the sphere."""
+    points = normalize(mesh.cell_points)
     if has_walls(mesh):
         cells = (points, normalize(mesh.vertex_points), *_vertex_rings(mesh))
-        spacing *= float(np.sqrt(mesh.area_cell.sum() / (4.0 * np.pi * mesh.sphere_radius**2)))
     else:
         triangulation = Triangulation(points, mesh.cells_on_vertex)
         cells = (points, triangulation.circumcenters, triangulation.ring_starts, triangulation.rings)
     if density is uniform:
         _, moment, _ = masses_and_moments(*cells)
-        return arc_length(points, normalize(moment)), spacing
-    return centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells)), spacing
+        return arc_length(points, normalize(moment))
+    return centroid_distances(WeightedCells(density, mesh.n_cells).integrate(*cells))
 
 
 def _vertex_rings(mesh: VoronoiMesh) -> tuple[Index, Index]:

@@ -6,7 +6,7 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.discrete.walls import closed_mesh
-from mesh.geometry.sphere import dot, east_north, normalize
+from mesh.geometry.surface import surface_of
 from mesh.voronoi_mesh import VoronoiMesh
 
 
@@ -36,24 +36,14 @@ class Sides:
 
 def sides_of_cells(mesh: VoronoiMesh) -> Sides:
     """The sides of the cells of `mesh`."""
-    there, mesh, radius = mesh.edge_signs_on_cell != 0, closed_mesh(mesh), mesh.sphere_radius
-    centers, vertices = mesh.cell_points / radius, mesh.vertex_points / radius
-    middles = normalize(vertices[mesh.vertices_on_edge].sum(axis=1))[np.where(there, mesh.edges_on_cell, 0)]
+    there, mesh, unit = mesh.edge_signs_on_cell != 0, closed_mesh(mesh), mesh.length_unit
+    surface = surface_of(mesh)
+    centers, vertices = mesh.cell_points / unit, mesh.vertex_points / unit
+    tail, head = (vertices[mesh.vertices_on_edge[:, k]] for k in range(2))
+    middles = surface.midpoint(tail, head)[np.where(there, mesh.edges_on_cell, 0)]
     neighbours = centers[np.where(there, mesh.cells_on_cell, 0)]
-    axes = np.stack(east_north(mesh.lon_cell, mesh.lat_cell), axis=1)
-    normal, _ = _direction_and_arc(centers, axes, neighbours)
-    direction, arc = _direction_and_arc(centers, axes, middles)
+    axes = np.stack(surface.axes(mesh.lon_cell, mesh.lat_cell), axis=1)
+    normal, _ = surface.seen_from(centers, axes, neighbours)
+    direction, arc = surface.seen_from(centers, axes, middles)
     left = normal[..., 0] * direction[..., 1] - normal[..., 1] * direction[..., 0]
-    return Sides(normal * there[..., None], radius * arc * left * there, mesh.dc_edge[mesh.edges_on_cell])
-
-
-def _direction_and_arc(centers: Array, axes: Array, points: Array) -> tuple[Array, Array]:
-    """Unit vectors (n, k, 2) in which `points` (n, k, 3) are seen from `centers` (n, 3), and their distances, radians.
-
-    `axes` (n, 2, 3) are the vectors to the east and to the north.
-    """
-    chord = points - centers[:, None]
-    seen = np.einsum("nkx,nax->nka", chord, axes)
-    length = np.linalg.norm(seen, axis=-1)
-    arc = np.arctan2(length, dot(points, centers[:, None]))
-    return seen / np.where(length > 0.0, length, 1.0)[..., None], arc
+    return Sides(normal * there[..., None], unit * arc * left * there, mesh.dc_edge[mesh.edges_on_cell])

@@ -12,14 +12,17 @@ from mesh.voronoi_mesh import Topology
 FILL = -1
 
 
-def build_topology(triangles: Index, n_cells: int) -> Topology:
+def build_topology(triangles: Index, n_cells: int, handles: int = 0) -> Topology:
     """Connectivity of the Voronoi mesh that is dual to counter-clockwise `triangles` (n_vertices, 3).
 
     Vertices and edges are numbered after their lowest cells, whatever the order of the triangles, so the result
-    depends on the triangulation alone. Raises `MeshError` where the triangles do not close a sphere.
+    depends on the triangulation alone. Raises `MeshError` where the triangles do not close a sphere, or a surface of so
+    many `handles` (`mesh.geometry.surface`).
     """
-    if len(triangles) != 2 * n_cells - 4:
-        raise MeshError(f"{n_cells} cells need {2 * n_cells - 4} triangles to close the sphere, not {len(triangles)}")
+    needed = 2 * n_cells - 4 + 4 * handles
+    if len(triangles) != needed:
+        closed = "the plane" if handles else "the sphere"
+        raise MeshError(f"{n_cells} cells need {needed} triangles to close {closed}, not {len(triangles)}")
     for corner in (np.min(triangles), np.max(triangles)):
         if not 0 <= corner < n_cells:
             raise MeshError(f"a triangle has corner {corner}, but the generators are numbered 0 to {n_cells - 1}")

@@ -17,15 +17,8 @@ from mesh.discrete.identities import identity_residuals
 from mesh.discrete.metrics import at_walls_of, compute_metrics
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError, require
-from mesh.geometry.sphere import dot, normalize
-from mesh.geometry.vectors import (
-    cross_product,
-    dot_product,
-    triangle_normal,
-    triple_product,
-    vector_between,
-    vector_to,
-)
+from mesh.geometry.surface import UNIT_SPHERE, Surface, surface_of
+from mesh.geometry.vectors import cross_product, dot_product, nearest_image, outward, triple_product, vector_between
 from mesh.voronoi_mesh import Metrics, Topology, VoronoiMesh
 
 RULES = 1
@@ -48,19 +41,22 @@ def validate_mesh(mesh: VoronoiMesh, tolerance: float = OWN_TOLERANCE, fresh_met
     generators, and they are not computed again to be compared. Raises `MeshError`, one sentence that names entities
     and values, at the first thing that fails.
     """
+    surface = surface_of(mesh)
     _check_shapes(mesh)
     check_values(mesh)
-    validate_topology(mesh)
-    check_orientation(mesh.cell_points / mesh.sphere_radius, mesh)
-    exact = None if fresh_metrics else compute_metrics(normalize(mesh.cell_points), mesh, at_walls_of(mesh))
+    validate_topology(mesh, surface.handles)
+    check_orientation(mesh.cell_points / mesh.length_unit, mesh, surface)
+    exact = None
+    if not fresh_metrics:
+        exact = compute_metrics(surface.onto(mesh.cell_points), mesh, at_walls_of(mesh), surface)
     return validate_metrics(mesh, exact, tolerance)
 
 
 def validate_metrics(mesh: VoronoiMesh, exact: Metrics | None, tolerance: float) -> dict[str, float]:
     """Check the metrics on a valid topology; return the residuals of the discrete identities by name.
 
-    `exact` are the metrics on the unit sphere that follow from the generators, None where those of `mesh` do.
-    Raises `MeshError`.
+    `exact` are the metrics, in lengths of the mesh's unit, that follow from the generators, None where those
+    of `mesh` do. Raises `MeshError`.
     """
     _check_delaunay(mesh)
     for difference in () if exact is None else (*metric_differences(mesh, exact), angle_difference(mesh, exact)):
@@ -94,7 +90,7 @@ def _check_shapes(mesh: VoronoiMesh) -> None:
 
 
 def check_values(mesh: VoronoiMesh) -> None:
-    """Check that all numbers are finite and that coordinates lie on the sphere of the stated radius.
+    """Check that all numbers are finite and that coordinates lie on the sphere of the stated radius, or on the plane.
 
     Raises `MeshError`.
     """
@@ -108,7 +104,7 @@ def check_values(mesh: VoronoiMesh) -> None:
             )
     for place, name in (("cells", "cell"), ("edges", "edge"), ("vertices", "vertex")):
         axes = (getattr(mesh, f"{axis}_{name}") for axis in "xyz")
-        _require_on_sphere(by_blocks(lambda *rows: _lengths(np.stack(rows, axis=1)), *axes), mesh.sphere_radius, place)
+        _require_on(surface_of(mesh), np.stack(list(axes), axis=1), mesh.length_unit, place)
 
 
 @row_loop
@@ -123,41 +119,36 @@ def _are_finite(rows: Array) -> NDArray[np.bool_]:
 
 def require_on_sphere(points: Array, radius: float, place: str) -> None:
     """Raise `MeshError` unless all points (n, 3) lie on the sphere of this radius."""
-    _require_on_sphere(_lengths(points), radius, place)
+    _require_on(UNIT_SPHERE, points, radius, place)
 
 
-def _lengths(points: Array) -> Array:
-    return np.sqrt(dot(points, points))
+def _require_on(surface: Surface, points: Array, unit: float, place: str) -> None:
+    """Raise `MeshError` unless all points (n, 3), in lengths of `unit`, lie on a surface."""
+    wrong = f"not at sphere_radius = {unit:g} from the origin" if not surface.is_flat else "not in the plane z = 0"
+    off = by_blocks(lambda rows: surface.is_off(rows, unit, OUTSIDE_TOLERANCE), points)
+    require(~off, place, f"the coordinates are {wrong}")
 
 
-def _require_on_sphere(distance: Array, radius: float, place: str) -> None:
-    """Raise `MeshError` unless all distances (n,) from the origin are this radius."""
-    require(
-        np.abs(distance / radius - 1.0) <= OUTSIDE_TOLERANCE,
-        place,
-        f"the coordinates are not at sphere_radius = {radius:g} from the origin",
-    )
-
-
-def check_orientation(points: Array, topology: Topology) -> None:
-    """Check that triangles and rings run counter-clockwise for generators `points` (n_cells, 3), unit vectors.
+def check_orientation(points: Array, topology: Topology, surface: Surface = UNIT_SPHERE) -> None:
+    """Check that triangles and rings run counter-clockwise for generators `points` (n_cells, 3) on a surface.
 
     Of three cells, or of two neighbours in turn, one of which is missing, nothing is known. Raises `MeshError`.
     """
+    form = surface.periods, surface.is_flat
     require(
-        by_blocks(partial(_triangles_turn, points), topology.cells_on_vertex),
+        by_blocks(partial(_triangles_turn, points, *form), topology.cells_on_vertex),
         "vertices",
         "cellsOnVertex does not run counter-clockwise",
     )
     require(
-        by_blocks(partial(_rings_turn, points), points, topology.cells_on_cell, topology.n_edges_on_cell),
+        by_blocks(partial(_rings_turn, points, *form), points, topology.cells_on_cell, topology.n_edges_on_cell),
         "cells",
         "edgesOnCell does not run counter-clockwise",
     )
 
 
 @row_loop
-def _triangles_turn(points: Array, cells: Index) -> NDArray[np.bool_]:
+def _triangles_turn(points: Array, periods: Array, is_flat: bool, cells: Index) -> NDArray[np.bool_]:
     """Whether the three cells (n, 3) of each triangle run counter-clockwise."""
     turns = np.empty(len(cells), np.bool_)
     for row in range(len(cells)):
@@ -165,12 +156,16 @@ def _triangles_turn(points: Array, cells: Index) -> NDArray[np.bool_]:
         if min(a, b, c) == FILL:
             turns[row] = True
             continue
-        turns[row] = dot_product(vector_to(points, a), triangle_normal(points, a, b, c)) > 0.0
+        u = nearest_image(vector_between(points, a, points, b), periods)
+        v = nearest_image(vector_between(points, a, points, c), periods)
+        turns[row] = triple_product(outward(points, a, is_flat), u, v) > 0.0
     return turns
 
 
 @row_loop
-def _rings_turn(points: Array, centers: Array, cells: Index, counts: Index) -> NDArray[np.bool_]:
+def _rings_turn(
+    points: Array, periods: Array, is_flat: bool, centers: Array, cells: Index, counts: Index
+) -> NDArray[np.bool_]:
     """Whether the neighbours (n, max_edges) of each cell run counter-clockwise round its centre (n, 3)."""
     turns = np.ones(len(cells), np.bool_)
     for row in range(len(cells)):
@@ -178,21 +173,21 @@ def _rings_turn(points: Array, centers: Array, cells: Index, counts: Index) -> N
             following = cells[row, place + 1 if place + 1 < counts[row] else 0]
             if cells[row, place] == FILL or following == FILL:
                 continue
-            spoke = vector_between(centers, row, points, cells[row, place])
-            next_spoke = vector_between(centers, row, points, following)
-            turns[row] &= triple_product(vector_to(centers, row), spoke, next_spoke) > 0.0
+            spoke = nearest_image(vector_between(centers, row, points, cells[row, place]), periods)
+            next_spoke = nearest_image(vector_between(centers, row, points, following), periods)
+            turns[row] &= triple_product(outward(centers, row, is_flat), spoke, next_spoke) > 0.0
     return turns
 
 
 def _check_delaunay(mesh: VoronoiMesh) -> None:
     """Check that edges run along their tangents: the mesh is the Voronoi mesh of its cells, with walls or without."""
-    points, vertices = mesh.cell_points, mesh.vertex_points
+    points, vertices, surface = mesh.cell_points, mesh.vertex_points, surface_of(mesh)
     for each in (points, vertices):
-        each /= mesh.sphere_radius
+        each /= mesh.length_unit
 
     def along_tangent(*rows: NDArray) -> NDArray[np.bool_]:
-        middles = np.stack(rows[:3], axis=1) / mesh.sphere_radius
-        return _run_along_tangent(points, vertices, middles, *rows[3:])
+        middles = np.stack(rows[:3], axis=1) / mesh.length_unit
+        return _run_along_tangent(points, vertices, surface.periods, surface.is_flat, middles, *rows[3:])
 
     require(
         by_blocks(
@@ -206,7 +201,9 @@ def _check_delaunay(mesh: VoronoiMesh) -> None:
 
 
 @row_loop
-def _run_along_tangent(points: Array, vertices: Array, middles: Array, cells: Index, ends: Index) -> NDArray[np.bool_]:
+def _run_along_tangent(
+    points: Array, vertices: Array, periods: Array, is_flat: bool, middles: Array, cells: Index, ends: Index
+) -> NDArray[np.bool_]:
     """Whether the way from the first to the second end (n, 2) of each edge does not run against its tangent."""
     right = np.empty(len(cells), np.bool_)
     for row in range(len(cells)):
@@ -214,8 +211,9 @@ def _run_along_tangent(points: Array, vertices: Array, middles: Array, cells: In
             normal = vector_between(points, cells[row, 0], middles, row)
         else:
             normal = vector_between(points, cells[row, 0], points, cells[row, 1])
-        along = vector_between(vertices, ends[row, 0], vertices, ends[row, 1])
+        normal = nearest_image(normal, periods)
+        along = nearest_image(vector_between(vertices, ends[row, 0], vertices, ends[row, 1]), periods)
         # Vertices of cells on one circle coincide but for round-off, which a circumcentre magnifies.
         slack = OUTSIDE_TOLERANCE * dot_product(normal, normal)
-        right[row] = dot_product(along, cross_product(vector_to(middles, row), normal)) >= -slack
+        right[row] = dot_product(along, cross_product(outward(middles, row, is_flat), normal)) >= -slack
     return right

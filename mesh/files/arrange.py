@@ -15,6 +15,7 @@ from mesh.discrete.topology import FILL, connect
 from mesh.discrete.validate import check_orientation
 from mesh.errors import MeshError, require
 from mesh.geometry.sphere import dot
+from mesh.geometry.surface import UNIT_SPHERE, Surface
 from mesh.triangulation.ordering import turn_triangles
 from mesh.voronoi_mesh import TOPOLOGY_NAMES, Topology
 
@@ -23,42 +24,42 @@ Arrays = dict[str, NDArray]
 EDGE_COUNTS = {"n_edges_on_cell": "cells", "n_edges_on_edge": "edges"}
 
 
-def topology_in_order(arrays: Arrays, points: Array) -> Topology | None:
+def topology_in_order(arrays: Arrays, points: Array, surface: Surface = UNIT_SPHERE) -> Topology | None:
     """The topology of the arrays as they are, None if some are missing or in another order.
 
-    `points` (n_cells, 3) are the generators, unit vectors.
+    `points` (n_cells, 3) are the generators on the surface.
     """
     if not all(name in arrays for name in TOPOLOGY_NAMES):
         return None
     topology = Topology(**{name: arrays[name] for name in TOPOLOGY_NAMES})
     try:
-        validate_topology(topology)
-        check_orientation(points, topology)
+        validate_topology(topology, surface.handles)
+        check_orientation(points, topology, surface)
     except MeshError:
         return None
     return topology
 
 
-def arranged_topology(arrays: Arrays, points: Array) -> Topology:
+def arranged_topology(arrays: Arrays, points: Array, surface: Surface = UNIT_SPHERE) -> Topology:
     """The topology of triangles and, where they are there, numbers and normals of edges, rings at their lowest edges.
 
-    Raises `MeshError` where they do not close a sphere, or where any other array holds other entities.
+    Raises `MeshError` where they do not close the surface, or where any other array holds other entities.
     """
     triangles = arrays["cells_on_vertex"]
     n_cells = len(points)
     cells_on_edge = arrays.get("cells_on_edge")
-    n_edges = 3 * n_cells - 6 if cells_on_edge is None else len(cells_on_edge)
-    require_closed(n_cells, n_edges, len(triangles))
+    n_edges = 3 * (n_cells - 2 + 2 * surface.handles) if cells_on_edge is None else len(cells_on_edge)
+    require_closed(n_cells, n_edges, len(triangles), surface.handles)
     _require_cells("cells_on_vertex", triangles, n_cells)
     if cells_on_edge is not None:
         _require_cells("cells_on_edge", cells_on_edge, n_cells)
-    topology = connect(turn_triangles(_counter_clockwise(triangles, points)), n_cells, cells_on_edge)
+    topology = connect(turn_triangles(_counter_clockwise(triangles, points, surface)), n_cells, cells_on_edge)
     for name in EDGE_COUNTS:
         if name in arrays:
             _require_count(name, arrays[name], getattr(topology, name))
     require_same_entities(arrays, topology)
-    validate_topology(topology)
-    check_orientation(points, topology)
+    validate_topology(topology, surface.handles)
+    check_orientation(points, topology, surface)
     return topology
 
 
@@ -100,10 +101,10 @@ def arrange_weights(weights: Array, arrays: Arrays, topology: Topology, exact: A
     return result
 
 
-def _counter_clockwise(triangles: Index, points: Array) -> Index:
+def _counter_clockwise(triangles: Index, points: Array, surface: Surface) -> Index:
     """The triangles, those that run clockwise seen from outside turned round."""
     a, b, c = (points[triangles[:, k]] for k in range(3))
-    clockwise = dot(a, np.cross(b - a, c - a)) < 0.0
+    clockwise = dot(surface.outward(a), np.cross(surface.shortest(b - a), surface.shortest(c - a))) < 0.0
     return np.where(clockwise[:, None], triangles[:, [0, 2, 1]], triangles)
 
 

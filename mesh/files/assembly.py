@@ -13,11 +13,12 @@ from mesh.discrete.validate import OUTSIDE_TOLERANCE, check_values, require_on_s
 from mesh.discrete.walls import has_walls
 from mesh.errors import MeshError, require
 from mesh.files.arrange import arrange_kites, arrange_weights, arranged_topology, reordered, topology_in_order
-from mesh.files.at_walls import at_walls_in, normalize_but_for_rounding, vertex_points
-from mesh.files.mesh_file import SPARE, FileContent, fill_rings
+from mesh.files.at_walls import at_walls_in, vertex_points
+from mesh.files.mesh_file import SPARE, FileContent, fill_rings, positive_number
 from mesh.files.sea_order import arrange_sea_weights, arranged_sea, has_walls_in
 from mesh.geometry.angles import TURN, eastward
 from mesh.geometry.sphere import dot, from_lonlat
+from mesh.geometry.surface import UNIT_SPHERE, Surface, surface_of
 from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
 GENERATORS = ("x_cell", "y_cell", "z_cell")
@@ -61,17 +62,25 @@ def assembled_mesh(content: FileContent, recompute_metrics: bool) -> tuple[Voron
     """
     arrays, changes = dict(content.arrays), FileChanges()
     fill_rings(arrays)
-    points, radius = _generators(arrays, content.radius, changes)
-    topology = _topology(arrays, points, changes)
-    at_walls = at_walls_in(arrays, topology, points, radius, changes.replaced) if has_walls(topology) else None
-    exact = compute_metrics(points, topology, at_walls)
+    surface, (x_period, y_period) = content.surface, content.periods or (0.0, 0.0)
+    if content.on_a_sphere:
+        points, radius = _generators(arrays, content.radius, changes)
+    else:
+        points, radius = _generators_on_plane(arrays, surface), 0.0
+    topology = _topology(arrays, points, changes, surface)
+    at_walls = None
+    if has_walls(topology):
+        at_walls = at_walls_in(arrays, topology, points, radius or 1.0, changes.replaced, surface)
+    exact = compute_metrics(points, topology, at_walls, surface)
     density = _density(arrays, len(points), changes)
     topology_arrays = {name: getattr(topology, name) for name in TOPOLOGY_NAMES}
     unit = VoronoiMesh(
         **topology_arrays,
         **{name: getattr(exact, name) for name in METRICS_NAMES},
         mesh_density=density,
-        sphere_radius=1.0,
+        sphere_radius=1.0 if content.on_a_sphere else 0.0,
+        x_period=x_period,
+        y_period=y_period,
     )
     rebuilt = unit.scaled(radius)
     if recompute_metrics:
@@ -94,7 +103,7 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
         radius = positive_number(attribute)
         if radius is None or np.any(np.abs(distance / radius - 1.0) > OUTSIDE_TOLERANCE):
             radius = _radius_of(points, distance, attribute, changes)
-        return normalize_but_for_rounding(points), radius
+        return UNIT_SPHERE.kept_on(points), radius
     if not all(name in arrays for name in ("lon_cell", "lat_cell")):
         raise MeshError(
             "xCell, yCell and zCell are missing, and lonCell and latCell too; a mesh file must have its generators"
@@ -110,13 +119,20 @@ def _generators(arrays: dict[str, NDArray], attribute: object, changes: FileChan
     return from_lonlat(longitude, latitude), radius
 
 
-def positive_number(attribute: object) -> float | None:
-    """The attribute as a positive number, None if it is not one."""
-    try:
-        number = float(attribute)  # type: ignore[arg-type]
-    except (TypeError, ValueError):
-        return None
-    return number if np.isfinite(number) and number > 0.0 else None
+def _generators_on_plane(arrays: dict[str, NDArray], surface: Surface) -> Array:
+    """The generators (n_cells, 3), metres; z is zero where the file has none."""
+    if not all(name in arrays for name in GENERATORS[:2]):
+        raise MeshError("xCell and yCell are missing; the file of a mesh on a plane must have its generators")
+    arrays.setdefault("z_cell", np.zeros_like(arrays["x_cell"]))
+    for name in GENERATORS:
+        require(np.isfinite(arrays[name]), "cells", f"{BY_NAME[name].file_name} is not a finite number")
+    points = np.stack([arrays[name] for name in GENERATORS], axis=1)
+    require(~surface.is_off(points, 1.0, OUTSIDE_TOLERANCE), "cells", "on_a_sphere is NO, but zCell is not zero")
+    if not (surface.handles or has_walls_in(arrays)):
+        raise MeshError(
+            "the mesh has no walls, but its plane is not periodic in both directions (is_periodic, x_period, y_period)"
+        )
+    return points
 
 
 def _radius_of(points: Array, distance: Array, attribute: object, changes: FileChanges) -> float:
@@ -134,7 +150,7 @@ def _radius_of(points: Array, distance: Array, attribute: object, changes: FileC
     return radius
 
 
-def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges) -> Topology:
+def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges, surface: Surface) -> Topology:
     """Connectivity in our order; `arrays` loses what means nothing without the numbers of the edges."""
     if "cells_on_vertex" not in arrays:
         raise MeshError(
@@ -147,16 +163,20 @@ def _topology(arrays: dict[str, NDArray], points: Array, changes: FileChanges) -
     ).astype(np.int32)
     boundary = arrays.pop("boundary_vertex", None)
     if boundary is not None and np.any(boundary != at_boundary):
-        changes.replaced.append("boundaryVertex" if walls else "boundaryVertex (a closed sphere has none)")
+        changes.replaced.append("boundaryVertex" if walls else f"boundaryVertex (a closed {surface.name} has none)")
     if "cells_on_edge" not in arrays:
         for name in ON_EDGES:
             arrays.pop(name, None)
     missing = [name for name in TOPOLOGY_NAMES if name != "boundary_vertex" and name not in arrays]
     if missing:
         changes.missing.extend(BY_NAME[name].file_name for name in missing)
-    topology = topology_in_order({**arrays, "boundary_vertex": at_boundary}, points)
+    topology = topology_in_order({**arrays, "boundary_vertex": at_boundary}, points, surface)
     if topology is None:
-        topology = arranged_sea(arrays, points, vertex_points(arrays)) if walls else arranged_topology(arrays, points)
+        topology = (
+            arranged_sea(arrays, points, vertex_points(arrays, surface), surface)
+            if walls
+            else arranged_topology(arrays, points, surface)
+        )
         changes.sorted.extend(reordered(arrays, topology))
     return topology
 
@@ -200,7 +220,8 @@ def _lists_the_same_edges(arrays: dict[str, NDArray], topology: Topology) -> boo
 
 def _require_metrics_but_for_rounding(mesh: VoronoiMesh, exact: Metrics) -> None:
     """Raise `MeshError` where metrics differ by more than the rounding of coordinates to single precision explains."""
-    rounding = ROUNDING_GROWTH * float(np.finfo(np.float32).eps) / float(exact.dc_edge.min())
+    extent = float(surface_of(mesh).extent(mesh.cell_points))
+    rounding = ROUNDING_GROWTH * float(np.finfo(np.float32).eps) * extent / float(exact.dc_edge.min())
     for difference in metric_differences(mesh, exact):
         if not SPARE.issuperset(difference.names):
             require_small(difference, OUTSIDE_TOLERANCE + rounding)

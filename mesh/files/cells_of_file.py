@@ -21,7 +21,7 @@ def count_cells(path: AnyPath) -> int:
 
 
 def read_cells(path: AnyPath) -> tuple[CellGraph, Array]:
-    """The graph of the cells of a mesh file, and their generators (n_cells, 3) on the unit sphere.
+    """The graph of the cells of a mesh file, and their generators (n_cells, 3) on the unit sphere, or in metres.
 
     Reads generators and triangles alone, and takes a tenth of the memory of the mesh. Raises `MeshError` where one of
     the two is missing or wrong.
@@ -58,6 +58,8 @@ def _generators(content: FileContent) -> Array:
         points = from_lonlat(*(arrays[name] for name in ANGLES))
     else:
         raise MeshError("xCell, yCell and zCell are missing, and lonCell and latCell too; give a file that has them")
+    if not content.on_a_sphere:
+        return points
     size = dot(points, points)
     require(np.isfinite(size) & (size > 0.0), "cells", "the generator is no place on a sphere; mend the file")
     return normalize(points)

@@ -15,18 +15,18 @@ from numpy.typing import NDArray
 
 from mesh.conventions import (
     BY_NAME,
-    COORDINATES,
     DIMENSIONS,
     MESH_VARIABLES,
     MeshOutline,
     MeshVariable,
+    coordinates_on,
     dimension_sizes,
 )
 from mesh.density.record import define_generation, fill_generation, read_generation
 from mesh.discrete.validate import OUTSIDE_TOLERANCE, OWN_TOLERANCE, validate_metrics
 from mesh.errors import MeshError, MeshWarning
-from mesh.files.assembly import assembled_mesh, positive_number
-from mesh.files.mesh_file import FileContent, opened_mesh_file, read_content
+from mesh.files.assembly import assembled_mesh
+from mesh.files.mesh_file import FileContent, opened_mesh_file, positive_number, read_content
 from mesh.files.stamp import stamp_attributes
 from mesh.safe_files import AnyPath, dataset, definitions, written_aside
 from mesh.validated import is_validated, remember_validated
@@ -62,11 +62,17 @@ FEWEST_EDGES = 6
 
 
 def mesh_hash(mesh: VoronoiMesh) -> str:
-    """SHA-256, in hexadecimal, of every array of the mesh and its radius."""
-    digest = hashlib.sha256(np.float64(mesh.sphere_radius).tobytes())
+    """SHA-256, in hexadecimal, of every array of the mesh and its radius, or the periods of its plane."""
+    digest = hash_of_surface(mesh)
     for variable in MESH_VARIABLES:
         digest.update(np.ascontiguousarray(getattr(mesh, variable.name)).reshape(-1).data)
     return digest.hexdigest()
+
+
+def hash_of_surface(mesh: MeshOutline) -> "hashlib._Hash":
+    """What `mesh_hash` begins with."""
+    on = [mesh.sphere_radius] if mesh.sphere_radius > 0.0 else [0.0, mesh.x_period, mesh.y_period]
+    return hashlib.sha256(np.array(on, np.float64).tobytes())
 
 
 def write_mesh(
@@ -135,15 +141,27 @@ def least_sizes(n_cells: int) -> dict[str, int]:
 def mesh_attributes(mesh: MeshOutline, history: str, identity: str) -> dict[str, object]:
     """Global attributes that MPAS readers expect; `identity` is the hash of the mesh."""
     return {
-        "on_a_sphere": "YES",
-        "sphere_radius": float(mesh.sphere_radius),
-        "is_periodic": "NO",
+        **surface_attributes(mesh),
         "mesh_spec": "1.0",
         "Conventions": "MPAS",
         "source": "trisk",
         "history": history,
         "file_id": identity[:10],
         "density_name": mesh.density_name,
+    }
+
+
+def surface_attributes(mesh: MeshOutline) -> dict[str, object]:
+    """Global attributes that say what a mesh is on."""
+    if mesh.sphere_radius > 0.0:
+        return {"on_a_sphere": "YES", "sphere_radius": float(mesh.sphere_radius), "is_periodic": "NO"}
+    periodic = max(mesh.x_period, mesh.y_period) > 0.0
+    return {
+        "on_a_sphere": "NO",
+        "sphere_radius": 0.0,
+        "is_periodic": "YES" if periodic else "NO",
+        "x_period": float(mesh.x_period),
+        "y_period": float(mesh.y_period),
     }
 
 
@@ -167,7 +185,7 @@ def define_mesh_variables(file: netCDF4.Dataset, mesh: MeshOutline, names: froze
         target = file.createVariable(
             variable.file_name, "i4" if variable.integer else "f8", dimensions, fill_value=False
         )
-        target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable)})
+        target.setncatts({"units": variable.units, "long_name": variable.long_name, **_coordinates(variable, mesh)})
 
 
 def whole_arrays(mesh: VoronoiMesh) -> Slabs:
@@ -197,16 +215,19 @@ def _variables(names: frozenset[str] | None) -> list[MeshVariable]:
     return [variable for variable in MESH_VARIABLES if names is None or variable.name in names]
 
 
-def _coordinates(variable: MeshVariable) -> dict[str, str]:
-    """Attributes by which readers of the CF conventions find the longitude and the latitude of an array's values."""
+def _coordinates(variable: MeshVariable, mesh: MeshOutline) -> dict[str, str]:
+    """Attributes by which readers of the CF conventions find the place of an array's values."""
     kind, *_ = variable.name.split("_")
+    on_a_sphere = mesh.sphere_radius > 0.0
     if kind in STANDARD_NAMES:
-        return {"standard_name": STANDARD_NAMES[kind]}
-    return {"coordinates": COORDINATES[DIMENSIONS[variable.dimensions[0]]]}
+        return {"standard_name": STANDARD_NAMES[kind]} if on_a_sphere else {}
+    if kind in ("x", "y") and not on_a_sphere:
+        return {}
+    return {"coordinates": coordinates_on(mesh)[DIMENSIONS[variable.dimensions[0]]]}
 
 
 def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
-    """Read and validate an MPAS mesh file of any origin: classic, 64-bit or NetCDF-4, of any sphere radius.
+    """Read and validate an MPAS mesh file of any origin: classic, 64-bit or NetCDF-4, of any sphere radius or planar.
 
     A file that holds exactly what was validated before trisk wrote it is not validated again.
 
@@ -243,11 +264,12 @@ def read_mesh(path: AnyPath, recompute_metrics: bool = False) -> VoronoiMesh:
 
 def _stamped_mesh(content: FileContent) -> VoronoiMesh | None:
     """The mesh of a file as it is, None unless the hash of its arrays is that of the stamp."""
-    radius = positive_number(content.radius)
+    radius = positive_number(content.radius) if content.on_a_sphere else 0.0
     whole = len(content.arrays) == len(MESH_VARIABLES) and not content.single_precision
     if not content.stamp or radius is None or not whole:
         return None
-    mesh = VoronoiMesh(**content.arrays, sphere_radius=radius)  # type: ignore[arg-type]
+    x_period, y_period = content.periods or (0.0, 0.0)
+    mesh = VoronoiMesh(**content.arrays, sphere_radius=radius, x_period=x_period, y_period=y_period)  # type: ignore[arg-type]
     return mesh if mesh_hash(mesh) == content.stamp else None
 
 

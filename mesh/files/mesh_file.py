@@ -4,6 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import netCDF4
 import numpy as np
@@ -13,6 +14,7 @@ from mesh.conventions import DIMENSIONS, MESH_VARIABLES, MeshVariable
 from mesh.discrete.topology import FILL
 from mesh.errors import MeshError
 from mesh.files.stamp import stamp_of
+from mesh.geometry.surface import Surface, surface_of
 from mesh.safe_files import dataset
 
 SIZES = {"two": 2, "vertex_degree": 3}
@@ -37,7 +39,8 @@ class FileContent:
 
     What stands beyond the rings is what the file has there. `radius` is as the attribute has it, None where there is
     none. `single_precision` says whether coordinates of the generators were rounded to 32 bits. `stamp` is that of a
-    validated mesh (`mesh.files.stamp`), empty where there is none.
+    validated mesh (`mesh.files.stamp`), empty where there is none. `periods` are those of a plane, metres, None on a
+    sphere.
     """
 
     arrays: dict[str, NDArray]
@@ -45,6 +48,24 @@ class FileContent:
     n_cells: int
     single_precision: bool
     stamp: str
+    periods: tuple[float, float] | None = None
+
+    @property
+    def on_a_sphere(self) -> bool:
+        """Whether the mesh is on a sphere, and not on a plane."""
+        return self.periods is None
+
+    @property
+    def surface(self) -> Surface:
+        """What the mesh is on."""
+        return surface_of(self._Outline(1.0) if self.periods is None else self._Outline(0.0, *self.periods))
+
+    class _Outline(NamedTuple):
+        """See `mesh.geometry.surface.OnSurface`."""
+
+        sphere_radius: float
+        x_period: float = 0.0
+        y_period: float = 0.0
 
 
 @contextmanager
@@ -64,12 +85,10 @@ def opened_mesh_file(path: Path) -> Iterator[netCDF4.Dataset]:
 def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> FileContent:
     """All parts of a mesh that the file holds, or those of `names` alone.
 
-    Indices count from 0, and what is no index is -1; angles are in radians. Raises `MeshError` where the mesh is on no
-    sphere, or where a variable that the solver needs has other dimensions or no numbers.
+    Indices count from 0, and what is no index is -1; angles are in radians. Raises `MeshError` where a periodic plane
+    has no periods, or where a variable that the solver needs has other dimensions or no numbers.
     """
-    if str(getattr(file, "on_a_sphere", "YES")).strip().upper() != "YES":
-        raise MeshError("the mesh is not on a sphere (on_a_sphere is not YES); only global meshes are supported")
-    arrays = {}
+    periods, arrays = periods_of(file), {}
     for variable in MESH_VARIABLES:
         values = read_variable(file, variable) if names is None or variable.name in names else None
         if values is not None:
@@ -82,7 +101,40 @@ def read_content(file: netCDF4.Dataset, names: frozenset[str] | None = None) -> 
         n_cells=len(file.dimensions["nCells"]) if "nCells" in file.dimensions else 0,
         single_precision=any(source.dtype == np.float32 for source in sources),
         stamp=stamp_of(file),
+        periods=periods,
     )
+
+
+def periods_of(file: netCDF4.Dataset) -> tuple[float, float] | None:
+    """Periods of the plane that the mesh of a file is on, metres, zero for none; None on a sphere.
+
+    Raises `MeshError` where a periodic plane does not say after which lengths it repeats itself.
+    """
+    if _says_yes(file, "on_a_sphere", "YES"):
+        return None
+    if not _says_yes(file, "is_periodic", "NO"):
+        return 0.0, 0.0
+    given = {name: getattr(file, name, 0.0) for name in ("x_period", "y_period")}
+    x_period, y_period = (positive_number(value) or 0.0 for value in given.values())
+    if x_period == y_period == 0.0:
+        raise MeshError(
+            f"is_periodic is YES, but x_period and y_period are {given['x_period']} and {given['y_period']}; give the "
+            "lengths after which the plane repeats itself, in metres"
+        )
+    return x_period, y_period
+
+
+def _says_yes(file: netCDF4.Dataset, name: str, default: str) -> bool:
+    return str(getattr(file, name, default)).strip().upper() == "YES"
+
+
+def positive_number(attribute: object) -> float | None:
+    """The attribute as a positive number, None if it is not one."""
+    try:
+        number = float(attribute)  # type: ignore[arg-type]
+    except (TypeError, ValueError):
+        return None
+    return number if np.isfinite(number) and number > 0.0 else None
 
 
 def read_variable(file: netCDF4.Dataset, variable: MeshVariable, rows: slice = EVERY_ROW) -> NDArray | None:

@@ -4,16 +4,16 @@ All of it is, bit for bit, what the mesh in memory gives. Only `scaled_hash_of_f
 the stamp; the others take them as they are, and raise `mesh.files.stamped_file.NotValidatedError` where there is none.
 """
 
-import hashlib
 from pathlib import Path
 
 import numpy as np
 
 from mesh.arrays import Index
 from mesh.conventions import MESH_VARIABLES
-from mesh.files.io import write_arrays
-from mesh.files.stamped_file import NotValidatedError, opened_stamped_file
+from mesh.files.io import hash_of_surface, write_arrays
+from mesh.files.stamped_file import NotValidatedError, StampedFile, opened_stamped_file
 from mesh.geometry.sphere import normalize
+from mesh.geometry.surface import surface_of
 from mesh.partition.curve import blocks_along_curve
 from mesh.parts.mesh_part import MeshPart, part_of_rows
 from mesh.safe_files import AnyPath
@@ -36,9 +36,16 @@ def read_blocks_along_curve(path: AnyPath, count: int) -> Index:
     Raises `MeshError` where there are fewer cells, and where the file has no stamp or cannot be read.
     """
     with opened_stamped_file(path) as mesh:
-        slabs = zip(*(mesh.slabs(name) for name in ("x_cell", "y_cell", "z_cell")), strict=True)
-        keys = np.concatenate([hilbert_keys(normalize(np.stack(points, axis=1))) for points in slabs])
-        return blocks_along_curve(keys, mesh.slabs("cells_on_edge"), count)
+        return blocks_along_curve(_curve_keys(mesh), mesh.slabs("cells_on_edge"), count)
+
+
+def _curve_keys(mesh: StampedFile) -> Index:
+    """Places (n_cells,) of the cells along a curve; those of a plane, which is never so large, in one piece."""
+    axes = (mesh.slabs(name) for name in ("x_cell", "y_cell", "z_cell"))
+    slabs = (np.stack(points, axis=1) for points in zip(*axes, strict=True))
+    if mesh.sphere_radius == 0.0:
+        return hilbert_keys(surface_of(mesh).curve_places(np.concatenate(list(slabs))))
+    return np.concatenate([hilbert_keys(normalize(points)) for points in slabs])
 
 
 def scaled_hash_of_file(path: AnyPath, radius: float) -> str | None:
@@ -49,7 +56,7 @@ def scaled_hash_of_file(path: AnyPath, radius: float) -> str | None:
     try:
         with opened_stamped_file(path) as mesh:
             scaled = mesh.scaled(radius)
-            as_it_is, as_scaled = (hashlib.sha256(np.float64(each.sphere_radius).tobytes()) for each in (mesh, scaled))
+            as_it_is, as_scaled = (hash_of_surface(each) for each in (mesh, scaled))
             for variable in MESH_VARIABLES:
                 for values in mesh.slabs(variable.name):
                     as_it_is.update(values.reshape(-1).data)

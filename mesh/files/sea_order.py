@@ -15,6 +15,7 @@ from mesh.discrete.topology import FILL, edges_beside
 from mesh.discrete.validate import check_orientation
 from mesh.errors import MeshError, require
 from mesh.files.arrange import Arrays, require_same_entities
+from mesh.geometry.surface import Surface
 from mesh.voronoi_mesh import Topology
 
 NEEDED = ("cells_on_edge", "vertices_on_edge")
@@ -27,8 +28,8 @@ def has_walls_in(arrays: Arrays) -> bool:
     return all(name in arrays and (arrays[name] == FILL).any() for name in ("cells_on_edge", "cells_on_vertex"))
 
 
-def arranged_sea(arrays: Arrays, points: Array, vertices: Array) -> Topology:
-    """The topology of a mesh with walls, rings at their lowest edges, of generators and vertices (n, 3), unit vectors.
+def arranged_sea(arrays: Arrays, points: Array, vertices: Array, surface: Surface) -> Topology:
+    """The topology of a mesh with walls, rings at their lowest edges, of generators and vertices (n, 3) on a surface.
 
     Raises `MeshError` where edges form no rings, or where any other array holds other entities.
     """
@@ -36,7 +37,7 @@ def arranged_sea(arrays: Arrays, points: Array, vertices: Array) -> Topology:
     edges_on_cell, counts = _edges_of_cells(cells_on_edge, len(points))
     closed = _chain(edges_on_cell, counts, vertices_on_edge, vertices_on_cell := np.full_like(edges_on_cell, FILL))
     require(closed, "cells", "the edges that cellsOnEdge gives to the cell form no ring by their verticesOnEdge")
-    _turn_counter_clockwise(points, vertices, edges_on_cell, vertices_on_cell, counts)
+    _turn_counter_clockwise(surface, points, vertices, edges_on_cell, vertices_on_cell, counts)
     ends = np.where(edges_on_cell[..., None] == FILL, FILL, cells_on_edge[edges_on_cell])
     own = np.arange(len(points))[:, None]
     cells_on_cell = np.where(ends[..., 0] == own, ends[..., 1], ends[..., 0])
@@ -62,8 +63,8 @@ def arranged_sea(arrays: Arrays, points: Array, vertices: Array) -> Topology:
         same = arrays["n_edges_on_cell"] == counts
         require(same, "cells", "nEdgesOnCell is not the number of edges that cellsOnEdge gives; correct or remove it")
     require_same_entities({name: arrays[name] for name in arrays if name not in OF_TANGENTS}, topology)
-    validate_topology(topology)
-    check_orientation(points, topology)
+    validate_topology(topology, surface.handles)
+    check_orientation(points, topology, surface)
     return topology
 
 
@@ -141,14 +142,16 @@ def _chain(edges: Index, counts: Index, vertices_on_edge: Index, vertices: Index
     return closed
 
 
-def _turn_counter_clockwise(points: Array, corners: Array, edges: Index, vertices: Index, counts: Index) -> None:
+def _turn_counter_clockwise(
+    surface: Surface, points: Array, corners: Array, edges: Index, vertices: Index, counts: Index
+) -> None:
     """Turn the rings round, in place, whose vertices run clockwise round their generators; the first edge stays."""
     place = np.arange(edges.shape[1])
     used = place < counts[:, None]
-    spokes = np.where(used[..., None], corners[vertices] - points[:, None, :], 0.0)
+    spokes = np.where(used[..., None], surface.shortest(corners[vertices] - points[:, None, :]), 0.0)
     before = np.where(place == 0, counts[:, None] - 1, place - 1)
     turn = np.cross(np.take_along_axis(spokes, before[..., None], axis=1), spokes).sum(axis=1)
-    clockwise = np.flatnonzero((turn * points).sum(axis=1) < 0.0)
+    clockwise = np.flatnonzero((turn * surface.outward(points)).sum(axis=1) < 0.0)
     back = np.where(used, (counts[:, None] - place) % counts[:, None], place)[clockwise]
     edges[clockwise] = np.take_along_axis(edges[clockwise], back, axis=1)
     back = np.where(used, counts[:, None] - 1 - place, place)[clockwise]

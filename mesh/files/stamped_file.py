@@ -14,11 +14,10 @@ from mesh.arrays import Index
 from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES
 from mesh.density.record import read_generation
 from mesh.errors import MeshError
-from mesh.files.assembly import positive_number
-from mesh.files.mesh_file import opened_mesh_file, read_variable
+from mesh.files.mesh_file import opened_mesh_file, periods_of, positive_number, read_variable
 from mesh.files.stamp import stamp_of
 from mesh.safe_files import AnyPath
-from mesh.voronoi_mesh import AREA_NAMES, LENGTH_NAMES, VoronoiMesh
+from mesh.voronoi_mesh import AREA_NAMES, LENGTH_NAMES, VoronoiMesh, scale_factor
 
 SLAB = 4 * 1024 * 1024
 """Bytes that are read together."""
@@ -32,7 +31,8 @@ class NotValidatedError(MeshError):
 class StampedFile:
     """The mesh of an open file, taken as it is: whether it has the hash of the `stamp` is not checked.
 
-    `sphere_radius` is that of the mesh, to which lengths are multiplied by `factor` where there is one.
+    `sphere_radius` is that of the mesh, to which lengths are multiplied by `factor` where there is one; it is zero on a
+    plane, of which `x_period` and `y_period` are the periods.
     """
 
     path: Path
@@ -40,6 +40,8 @@ class StampedFile:
     stamp: str
     sphere_radius: float
     factor: float | None = None
+    x_period: float = 0.0
+    y_period: float = 0.0
 
     @property
     def n_cells(self) -> int:
@@ -78,7 +80,7 @@ class StampedFile:
 
     def scaled(self, radius: float) -> "StampedFile":
         """The same mesh on a sphere of another radius, in metres, with the bits of `VoronoiMesh.scaled`."""
-        return replace(self, sphere_radius=float(radius), factor=radius / self.sphere_radius)
+        return replace(self, sphere_radius=float(radius), factor=scale_factor(self.sphere_radius, radius))
 
     def rescale(self, name: str, values: NDArray) -> NDArray:
         """Values of an array as the file has them, on the sphere of this mesh."""
@@ -115,6 +117,8 @@ class StampedFile:
             density_name=self.density_name,
             density_source=self.density_source,
             fixed_cells=None if self.fixed_cells is None else self.fixed_cells[cells],
+            x_period=self.x_period,
+            y_period=self.y_period,
         )
 
     @cached_property
@@ -151,10 +155,11 @@ def opened_stamped_file(path: AnyPath) -> Iterator[StampedFile]:
             file = stack.enter_context(opened_mesh_file(path))
         except MeshError as error:
             raise MeshError(f"{path}: {error}") from error
-        stamp, radius = stamp_of(file), positive_number(getattr(file, "sphere_radius", None))
+        stamp, periods = stamp_of(file), periods_of(file)
+        radius = positive_number(getattr(file, "sphere_radius", None)) if periods is None else 0.0
         whole = all(variable.file_name in file.variables for variable in MESH_VARIABLES)
         if not stamp or radius is None or not whole:
             raise NotValidatedError(
                 f"{path}: the file has no stamp of a validated mesh; read the mesh with read_mesh and write it anew"
             )
-        yield StampedFile(path, file, stamp, radius)
+        yield StampedFile(path, file, stamp, radius, None, *(periods or ()))

@@ -66,7 +66,7 @@ class MeshInMemory:
 
 @dataclass(frozen=True)
 class MeshInFile:
-    """A `WholeMesh` in a stamped file at `path`, on a sphere of `radius` metres; nobody holds all of it.
+    """A `WholeMesh` in a stamped file at `path`, on a sphere of `radius` metres, zero on a plane; nobody holds it all.
 
     `scaled_hash` is its `mesh_hash` on that sphere (`mesh.files.part_of_file.scaled_hash_of_file`).
     """

@@ -1,1 +1,1 @@
-"""The sphere."""
+"""The sphere and the plane, behind one interface (`surface`)."""

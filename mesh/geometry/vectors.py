@@ -32,6 +32,25 @@ def vector_between(origins: Array, start: int, points: Array, end: int) -> Vecto
 
 
 @compiled
+def nearest_image(way: Vector, periods: Array) -> Vector:
+    """A vector less whole periods (2,) of x and y, where these are not zero: at most half of them long."""
+    x, y, z = way
+    if periods[0] > 0.0:
+        x -= periods[0] * np.rint(x / periods[0])
+    if periods[1] > 0.0:
+        y -= periods[1] * np.rint(y / periods[1])
+    return (x, y, z)
+
+
+@compiled
+def outward(points: Array, point: int, is_flat: bool) -> Vector:
+    """Normal of the surface at a point: the vector to it on the unit sphere, along z in the plane."""
+    if is_flat:
+        return (0.0, 0.0, 1.0)
+    return vector_to(points, point)
+
+
+@compiled
 def dot_product(u: Vector, v: Vector) -> float:
     """The product u.v."""
     return u[0] * v[0] + u[1] * v[1] + u[2] * v[2]

@@ -92,6 +92,8 @@ def gradients(mesh: VoronoiMesh, centroids: Array, values: Array) -> Array:
 
 def overlaps_of(source: VoronoiMesh, target: VoronoiMesh) -> Overlaps:
     """What the cells of two meshes have in common; both may be of any radius, with or without walls."""
+    for mesh in (source, target):
+        mesh.require_sphere("cells of two meshes are overlaid")
     centers, points = normalize(source.cell_points), normalize(target.cell_points)
     corners, vertices = normalize(source.vertex_points), normalize(target.vertex_points)
     tree = cKDTree(centers)

@@ -56,6 +56,7 @@ def sea_cells(mesh: VoronoiMesh, region: Region, *, keep_lakes: bool = False, ke
     round it, with land on either side; such cells are left out until there are none, before the largest sea is sought.
     `keep_channels` and `keep_lakes` leave them. Raises `MeshError` where no cell is left.
     """
+    mesh.require_sphere("regions are cut out")
     radii = ROUND * np.sqrt(mesh.area_cell / np.pi) / mesh.sphere_radius
     inside = region.contains(normalize(mesh.cell_points), radii)
     if not inside.any():

@@ -61,6 +61,8 @@ class Plan:
 
     def __post_init__(self) -> None:
         require_days(self.days)
+        if self.case.radius == 0.0:
+            raise InputError(f"{self.case.name} is on a plane; meshes are adapted on a sphere alone")
         if not 1 <= self.rounds <= MOST_ROUNDS:
             raise InputError(f"a mesh cannot be adapted {self.rounds} times; ask for 1 to {MOST_ROUNDS} rounds")
         if not self.fine > self.cells:

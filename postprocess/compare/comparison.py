@@ -135,15 +135,15 @@ def fields_on(run: Run, solution: Solution, day: float) -> Fields:
     """
     mesh = run.mesh
     if isinstance(solution, RunSolution):
-        thickness, normal_velocity = solution.thickness(mesh.lon_cell, mesh.lat_cell, day), None
+        thickness, normal_velocity = solution.thickness(*mesh.coordinates("cell"), day), None
     else:
         thickness = sample_cells(mesh, partial(solution.thickness, day=day), run.sampling)
-        zonal, meridional = solution.velocity(mesh.lon_edge, mesh.lat_edge, day)
+        zonal, meridional = solution.velocity(*mesh.coordinates("edge"), day)
         normal_velocity = np.cos(mesh.angle_edge) * zonal + np.sin(mesh.angle_edge) * meridional
     return Fields(
         thickness,
-        solution.velocity(mesh.lon_cell, mesh.lat_cell, day),
-        solution.vorticity(mesh.lon_vertex, mesh.lat_vertex, day),
+        solution.velocity(*mesh.coordinates("cell"), day),
+        solution.vorticity(*mesh.coordinates("vertex"), day),
         normal_velocity,
     )
 

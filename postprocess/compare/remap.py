@@ -53,6 +53,7 @@ class Remap:
 
 def remap_cells(mesh: VoronoiMesh, longitude: Array, latitude: Array) -> Remap:
     """Map from the cell centres of `mesh` to points at `longitude` and `latitude` (n_points,), radians."""
+    mesh.require_sphere("fields are brought to other places")
     ring = np.where(mesh.on_ring, mesh.cells_on_cell, -1)
     return _remap(mesh.lon_cell, mesh.lat_cell, ring, longitude, latitude)
 
@@ -63,6 +64,7 @@ def remap_vertices(mesh: VoronoiMesh, longitude: Array, latitude: Array) -> Rema
     A fit to vertices of its own, over two rings of neighbours: the kite-weighted mean over cells would smooth the
     field first, an error of second order like those that are to be measured.
     """
+    mesh.require_sphere("fields are brought to other places")
     across = mesh.vertices_on_edge[mesh.edges_on_vertex].sum(axis=2) - np.arange(mesh.n_vertices)[:, None]
     ring = np.where(mesh.edges_on_vertex < 0, -1, across)
     return _remap(mesh.lon_vertex, mesh.lat_vertex, ring, longitude, latitude)

@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import Protocol
 
 from cases.base import Case
-from cases.registry import find_case
+from cases.finding.registry import find_case
 from mesh.arrays import Array
 from mesh.safe_files import name_in_text
 from postprocess.compare.remap import Remap, remap_cells, remap_vertices

@@ -42,6 +42,7 @@ def resolved_wavenumber(n_cells: int) -> int:
 
 def spectra_of(run: Run, day: float) -> Spectra:
     """Spectra of the snapshot of `day` up to the wavenumber that a uniform mesh of as many cells resolves."""
+    run.mesh.require_sphere("spectra are made")
     mesh, fields = run.mesh, run.snapshot(day).fields
     harmonics = Harmonics(resolved_wavenumber(mesh.n_cells), mesh.sphere_radius)
     shape = harmonics.points[0].shape

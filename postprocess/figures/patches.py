@@ -55,6 +55,7 @@ def require_place(mesh: VoronoiMesh, values: Array) -> None:
 
 def cell_patches(mesh: VoronoiMesh) -> Patches:
     """Voronoi cells."""
+    mesh.require_sphere("maps are drawn")
     columns = np.minimum(np.arange(mesh.max_edges), mesh.n_edges_on_cell[:, None] - 1)
     rings = np.take_along_axis(mesh.vertices_on_cell, columns, axis=1)
     return Patches(normalize(mesh.vertex_points)[rings], mesh.n_edges_on_cell, mesh.lon_cell)
@@ -62,6 +63,7 @@ def cell_patches(mesh: VoronoiMesh) -> Patches:
 
 def triangle_patches(mesh: VoronoiMesh) -> Patches:
     """Delaunay triangles, one for each vertex; of those at the boundary what lies in the cells that are there."""
+    mesh.require_sphere("maps are drawn")
     if has_walls(mesh):
         return _kites(mesh)
     return _of_equal_counts(normalize(mesh.cell_points)[mesh.cells_on_vertex])
@@ -79,6 +81,7 @@ def _kites(mesh: VoronoiMesh) -> Patches:
 
 def edge_patches(mesh: VoronoiMesh) -> Patches:
     """The quadrilateral of the two cell centres and the two vertices of each edge; at a wall half of it."""
+    mesh.require_sphere("maps are drawn")
     centres, vertices = normalize(mesh.cell_points)[mesh.cells_on_edge], normalize(mesh.vertex_points)
     if has_walls(mesh):
         centres = np.where(mesh.cells_on_edge[..., None] < 0, normalize(mesh.edge_points)[:, None, :], centres)

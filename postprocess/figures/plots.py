@@ -24,6 +24,7 @@ ROUND_OFF_FLOOR = 1e-20
 
 def plot_run(run: Run, folder: AnyPath) -> list[Path]:
     """Write all figures of `run` to `folder`; return their paths."""
+    run.mesh.require_sphere("figures of runs are drawn")
     folder = prepared_folder(folder)
     last = run.last_snapshot()
     heading = f"{run.case}, {run.mesh.n_cells} cells, day {last.day:g}"

@@ -54,6 +54,7 @@ def film(
     than two snapshots.
     """
     path = Path(path)
+    run.mesh.require_sphere("films are made")
     _require_size(size)
     require_kind(path, size)
     rows = _rows(run, days)

@@ -89,6 +89,8 @@ def make_reference(
     What lies beyond half the truncation is a part of what the two highest truncations differ by. Raises `InputError`
     where an argument is out of range or the case is not one of the full equations, `RunError` where a run fails.
     """
+    if case.radius == 0.0:
+        raise InputError(f"{case.name} is on a plane, and the spectral model is on a sphere; choose another case")
     if not LEAST_TRUNCATION <= truncation <= LARGEST_TRUNCATION:
         raise InputError(
             f"the truncation is {truncation}; give at least {LEAST_TRUNCATION}, at most {LARGEST_TRUNCATION}"

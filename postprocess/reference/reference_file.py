@@ -8,7 +8,7 @@ from pathlib import Path
 import netCDF4
 import numpy as np
 
-from cases.registry import find_case
+from cases.finding.registry import find_case
 from mesh.arrays import Array
 from mesh.safe_files import AnyPath, dataset, written_aside
 from postprocess.reference.harmonics import Coefficients, Harmonics, truncation_of

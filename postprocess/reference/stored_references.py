@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from cases.registry import CASES
+from cases.finding.registry import CASES
 
 FOLDER = Path(__file__).parent / "stored"
 """Folder of the references that come with the package."""

@@ -7,7 +7,7 @@ outside the range of the three cells, and can turn negative while all three are 
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.voronoi_mesh import Place, VoronoiMesh
 from swe.parallel.processes import ONE_PROCESS, Processes
 from swe.state import State
 
@@ -29,7 +29,7 @@ def problem_with_state(mesh: VoronoiMesh, state: State, processes: Processes = O
     cell = int(np.argmax(~((h > 0.0) & np.isfinite(h))))
     return (
         f"thickness is {h[cell]:g} m in cell {processes.number('cells', cell)} (counted from 0) "
-        f"{_place(mesh.lon_cell[cell], mesh.lat_cell[cell])}"
+        f"{_place(mesh, 'cell', cell)}"
     )
 
 
@@ -56,7 +56,7 @@ def problem_at_vertices(mesh: VoronoiMesh, thickness: Array, processes: Processe
     obtuse = int(np.count_nonzero((mesh.kite_areas_on_vertex < 0.0).any(axis=1)))
     return (
         f"thickness is {at_vertices[vertex]:g} m at vertex {processes.number('vertices', vertex)} (counted from 0) "
-        f"{_place(mesh.lon_vertex[vertex], mesh.lat_vertex[vertex])}, the corner of cells of {around} m: "
+        f"{_place(mesh, 'vertex', vertex)}, the corner of cells of {around} m: "
         f"{obtuse} triangles of the mesh are so obtuse that kites are negative; use a mesh without them "
         "(trisk mesh --well-centred)"
     )
@@ -84,5 +84,8 @@ def vertex_thickness(mesh: VoronoiMesh, thickness: Array) -> Array:
     return (mesh.kite_areas_on_vertex * thickness[mesh.cells_on_vertex]).sum(axis=1) / mesh.area_triangle
 
 
-def _place(longitude: float, latitude: float) -> str:
+def _place(mesh: VoronoiMesh, kind: Place, number: int) -> str:
+    longitude, latitude = (float(values[number]) for values in mesh.coordinates(kind))
+    if not mesh.on_a_sphere:
+        return f"at x = {longitude:g} and y = {latitude:g} m"
     return f"at longitude {np.degrees(longitude):.1f} and latitude {np.degrees(latitude):.1f} degrees"

@@ -14,7 +14,8 @@ from swe.errors import InputError
 Made = TypeVar("Made")
 
 PlaceFunction = Callable[[Array, Array], Array | float]
-"""A function of longitude and latitude, radians, that returns one value per position, or one number for all."""
+"""A function of longitude and latitude, radians, that returns one value per position, or one number for all; on a plane
+of x and y, metres."""
 
 Field = float | PlaceFunction
 """The same number everywhere, or a function of the place."""

@@ -30,7 +30,7 @@ class ThicknessRelaxation(Forcing):
         require_field("the thickness to relax to", thickness)
         self.thickness = thickness
         self.time_scale = coefficient("the time scale of the relaxation", time_scale, positive=True)
-        self._target = OncePerMesh(lambda mesh: sampled(self.thickness, mesh.lon_cell, mesh.lat_cell))
+        self._target = OncePerMesh(lambda mesh: sampled(self.thickness, *mesh.coordinates("cell")))
 
     def _source(self, mesh: VoronoiMesh, state: State, time: float) -> Array:
         return (self._target(mesh) - state.thickness) / self.time_scale

@@ -22,7 +22,7 @@ class WindStress(Forcing):
     ----------
     eastward, northward
         Components of the stress tau on the fluid, N/m2, positive towards the east and the north: numbers, or functions
-        of longitude and latitude, radians.
+        of longitude and latitude, radians, or of x and y, metres, on a plane.
     density
         Density rho of the fluid, kg/m3.
     name
@@ -44,7 +44,7 @@ class WindStress(Forcing):
 
     def _stress_along_normals(self, mesh: VoronoiMesh) -> Array:
         """The stress over the density, along the normals of edges (n_edges,), m2/s2."""
-        east, north = (sampled(part, mesh.lon_edge, mesh.lat_edge) for part in (self.eastward, self.northward))
+        east, north = (sampled(part, *mesh.coordinates("edge")) for part in (self.eastward, self.northward))
         return normal_component(mesh, east, north) / self.density
 
     def _acceleration(self, mesh: VoronoiMesh, state: State, time: float) -> Array:

@@ -17,7 +17,7 @@ import netCDF4
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.conventions import BY_NAME, COORDINATES
+from mesh.conventions import BY_NAME, MeshOutline, coordinates_on
 from mesh.files.io import define_mesh_variables, fill_variables, mesh_attributes
 from mesh.safe_files import dataset, definitions, netcdf_lock, opened_dataset, written_aside
 from swe.diagnostics.budgets import rate_series
@@ -64,9 +64,9 @@ def _create_history(path: Path, run: RunDescription, description: Mapping[str, A
             file.setncatts({**identity, **_attributes(run.model, description)})
             define_mesh_variables(file, mesh, GEOMETRY)
             _define_time(file)
-            _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY)
+            _define_field(file, "topography", (TOPOGRAPHY.place,), TOPOGRAPHY, mesh)
             for name in run.fields:
-                _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name])
+                _define_field(file, name, ("Time", FIELDS[name].place), FIELDS[name], mesh)
                 file[name].cell_methods = FIELDS[name].cell_methods(TIME_COORDINATE)
         fill_variables(file, mesh, slabs, GEOMETRY)
         file["topography"][:] = topography
@@ -322,8 +322,11 @@ def package_versions() -> dict[str, str]:
     return versions
 
 
-def _define_field(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], field: Field) -> None:
+def _define_field(
+    file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], field: Field, mesh: MeshOutline
+) -> None:
     _define(file, name, dimensions, field.units, field.meaning)
+    file[name].coordinates = coordinates_on(mesh)[dimensions[-1]]
     if field.standard_name:
         file[name].standard_name = field.standard_name
 
@@ -331,8 +334,6 @@ def _define_field(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...],
 def _define(file: netCDF4.Dataset, name: str, dimensions: tuple[str, ...], units: str, long_name: str) -> None:
     variable = file.createVariable(name, "f8", dimensions)
     variable.setncatts({"units": units, "long_name": long_name})
-    if dimensions[-1] in COORDINATES:
-        variable.coordinates = COORDINATES[dimensions[-1]]
 
 
 def _define_time(file: netCDF4.Dataset) -> None:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Index
+from mesh.geometry.surface import surface_of
 from mesh.triangulation.ordering import hilbert_order, inverse_order, keeps_neighbours
 from mesh.voronoi_mesh import VoronoiMesh
 
@@ -49,7 +50,7 @@ def tile_bounds(first: int, last: int, cells_per_tile: int) -> Index:
 
 def order_of_cells(mesh: VoronoiMesh, first_cell: Index) -> Index:
     """The mesh's own order if it keeps neighbours together, else that along a Hilbert curve."""
-    own, curve = np.arange(mesh.n_cells), hilbert_order(mesh.cell_points)
+    own, curve = np.arange(mesh.n_cells), hilbert_order(surface_of(mesh).curve_places(mesh.cell_points))
     tiles = np.searchsorted(first_cell, own, side="right")
     return own if keeps_neighbours(tiles, tiles[inverse_order(curve)], (mesh.cells_on_edge,)) else curve
 

@@ -15,3 +15,9 @@ def pair_of(option: str, text: str, whole: bool = False) -> tuple[float, float]:
         kind = "whole numbers" if whole else "numbers"
         raise InputError(f"{option} is '{text}'; give two {kind} with a comma between them")
     return first, second
+
+
+def counts_of(option: str, text: str) -> tuple[int, int]:
+    """Two whole numbers with a comma between them; raise `InputError` where there are none."""
+    first, second = pair_of(option, text, whole=True)
+    return int(first), int(second)

@@ -11,10 +11,10 @@ def cases(
     ] = None,
 ) -> None:
     """List the test cases, or the parameters of one."""
-    from cases import CASES, find_case
+    from cases import CASES, PLANE_CASES, find_case
     from trisk.report.case_table import print_case, print_cases
 
     if name is None:
-        print_cases([find_case(known) for known in CASES])
+        print_cases([find_case(known) for known in (*CASES, *PLANE_CASES)])
     else:
         print_case(find_case(name))

@@ -117,6 +117,8 @@ def run(
     chosen_fields(names)
     if not 0.0 < days < float("inf"):
         raise InputError(f"the run is to last {days:g} days; give a number above 0")
+    if cells is not None and chosen.radius == 0.0:
+        raise InputError(f"{chosen.name} is on a plane, and --cells makes spheres; give --mesh (trisk mesh --plane)")
     if resume and recompute_metrics and mesh_file is None:
         raise typer.BadParameter("--recompute-metrics goes with --mesh FILE")
     of_run = mesh_file_of_run(output) if resume and mesh_file is None else None

@@ -79,6 +79,25 @@ def mesh(
             "--coast-factor", help="How many times --coast-width raises the density at the coast; by default 16."
         ),
     ] = None,
+    plane: Annotated[
+        str | None,
+        typer.Option(
+            "--plane",
+            metavar="LX,LY",
+            help="Make a mesh on a plane of these lengths, m, in place of the sphere.",
+        ),
+    ] = None,
+    periodic: Annotated[
+        str, typer.Option("--periodic", help="Where the plane repeats itself: xy, x (a channel) or none (a box).")
+    ] = DEFAULTS.periodic,
+    hexagons: Annotated[
+        str | None,
+        typer.Option(
+            "--hexagons",
+            metavar="NX,NY",
+            help="Regular hexagons of the plane: NY rows of NX; LY must be sqrt(3)/2 NY LX/NX.",
+        ),
+    ] = None,
     start: Annotated[
         str | None,
         typer.Option(
@@ -120,14 +139,15 @@ def mesh(
     file_format: FileFormat = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
-    """Generate a spherical centroidal Voronoi mesh."""
+    """Generate a centroidal Voronoi mesh of the sphere, or regular hexagons of a plane."""
     from mesh import MeshError, read_mesh, write_mesh
     from mesh.files.io import least_sizes, require_format
-    from mesh.generation.pipeline import generate_mesh
+    from mesh.generation.pipeline import generate_mesh, is_on_plane
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
     from postprocess.runs.folders import require_possible_file
     from trisk.arguments.outputs import command_line
+    from trisk.arguments.pairs import counts_of, pair_of
     from trisk.report.summaries import print_quality, tell_of_centring
 
     request = MeshRequest(
@@ -144,10 +164,21 @@ def mesh(
         density_floor=density_floor,
         density_power=density_power,
         density_smoothing=density_smoothing,
+        plane=None if plane is None else pair_of("--plane", plane),
+        periodic=periodic,
+        hexagons=None if hexagons is None else counts_of("--hexagons", hexagons),
     )
     limits = limits_of(request)
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
+    if is_on_plane(request):
+        if resume or nested is not None or coast is not None or coast_width is not None:
+            raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
+        on_plane = generate_mesh(request).mesh
+        write_mesh(on_plane, output, command_line(), file_format)
+        if not quiet:
+            print_quality(on_plane, str(output))
+        return
     if coast is not None:
         if resume or nested is not None:
             raise MeshError("--resume and --nested do not go with --coast; leave them out")

@@ -25,7 +25,8 @@ def partition(
 ) -> None:
     """Divide a mesh into connected blocks with METIS.
 
-    Writes graph.info and graph.info.part.N as MPAS reads them, and a map of the blocks, and prints how good they are.
+    Writes graph.info and graph.info.part.N as MPAS reads them, and a map of the blocks on a sphere, and prints how good
+    they are.
     """
     from mesh.files.partition_files import read_weights, write_partition
     from mesh.partition.measures import measure_partition
@@ -42,9 +43,9 @@ def partition(
     divided = partition_graph(graph, blocks, costs)
     folder = prepared_folder(output)
     paths = write_partition(folder, graph, divided)
-    picture = write_block_figure(drawn, graph, divided, folder / "blocks.png")
+    pictures = () if drawn is None else (write_block_figure(drawn, graph, divided, folder / "blocks.png"),)
     if not quiet:
-        print_partition(str(file), divided, measure_partition(graph, divided, costs), (*paths, picture))
+        print_partition(str(file), divided, measure_partition(graph, divided, costs), (*paths, *pictures))
 
 
 def _file_and_variable(weights: str) -> tuple[Path, str]:

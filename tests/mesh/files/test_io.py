@@ -311,10 +311,10 @@ def test_a_triangle_has_three_corners(mesh_file: Path, tmp_path: Path) -> None:
         read_mesh(tmp_path / "quads.nc")
 
 
-def test_a_plane_is_refused(mesh_file: Path) -> None:
+def test_a_sphere_is_no_plane(mesh_file: Path) -> None:
     with netCDF4.Dataset(mesh_file, "r+") as file:
         file.on_a_sphere = "NO"
-    with pytest.raises(MeshError, match=r"not on a sphere \(on_a_sphere is not YES\); only global meshes"):
+    with pytest.raises(MeshError, match="on_a_sphere is NO, but zCell is not zero"):
         read_mesh(mesh_file)
 
 

@@ -11,6 +11,8 @@ from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
 from cases.munk import Munk
 from cases.parameters import Value, with_parameters
+from cases.plane.base import PlaneCase
+from cases.plane.waves import InertiaGravityWave
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 from swe.errors import InputError
 
@@ -21,6 +23,10 @@ CASES: dict[str, type[Case]] = {
         *(Stommel, Munk, KelvinWave, Seiche, DoubleGyre),
     )
 }
+
+
+PLANE_CASES: dict[str, type[PlaneCase]] = {case.name: case for case in (InertiaGravityWave,)}
+"""The cases on planes."""
 
 
 def find_case(name: str, parameters: Mapping[str, Value] | None = None) -> Case:
@@ -35,8 +41,9 @@ def find_case(name: str, parameters: Mapping[str, Value] | None = None) -> Case:
 def _default_case(name: str) -> Case:
     if is_address(name):
         return load_case(name)
-    if name not in CASES:
+    known: dict[str, type[Case]] = {**CASES, **PLANE_CASES}
+    if name not in known:
         raise InputError(
-            f"there is no case named '{name}'; choose one of {', '.join(CASES)}, or FILE.py:CLASS for one of your own"
+            f"there is no case named '{name}'; choose one of {', '.join(known)}, or FILE.py:CLASS for one of your own"
         )
-    return CASES[name]()
+    return known[name]()

@@ -1,0 +1,1 @@
+"""Meshes on planes."""

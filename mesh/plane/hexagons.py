@@ -1,0 +1,135 @@
+"""Regular hexagons on a plane: periodic in both directions, a channel along x, or a closed box.
+
+Rows of cells run along x, each shifted by half a distance to those beside it. Walls follow the hexagons.
+"""
+
+import math
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mesh.arrays import Array, Index
+from mesh.discrete.build import plane_mesh
+from mesh.errors import MeshError
+from mesh.geometry.plane import Plane
+from mesh.parts.culling import culled
+from mesh.plain import plain_count, plain_number
+from mesh.validated import remember_validated
+from mesh.voronoi_mesh import VoronoiMesh
+
+PERIODIC = ("xy", "x", "none")
+"""Directions in which a plane may repeat itself; there are walls at the other ends."""
+
+ROW = 0.5 * math.sqrt(3.0)
+"""Distance of neighbouring rows, in distances of neighbouring cells."""
+
+FEWEST_COLUMNS, FEWEST_ROWS = 3, 4
+"""Of periodic meshes: with fewer, two cells would be neighbours twice."""
+
+ROUNDING = 1e-6
+"""Relative difference by which a length of the plane, as typed, may miss that of its rows."""
+
+
+def hexagon_mesh(plane: Sequence[float], hexagons: Sequence[int], periodic: str = "xy") -> VoronoiMesh:
+    """The validated mesh of regular hexagons on a plane of LX by LY metres, NX of them in each of NY rows.
+
+    Cells are LX / NX apart and their rows sqrt(3) / 2 of that, so LY must fit NY rows: `plane` is (LX, LY) and
+    `hexagons` (NX, NY). The mesh is `periodic` in "xy" or in "x", or in no direction, "none". Without a period, the
+    outermost cells reach beyond the plane by as much as they leave free of it. Raises `MeshError` where LY does not
+    fit, or where there are too few cells.
+    """
+    columns, rows = _counts(hexagons, periodic)
+    distance = _distance(_lengths(plane), columns, rows)
+    if periodic == "xy":
+        return _periodic(columns, rows, distance)
+    # A wider periodic mesh is cut, so that no position of what is left has been wrapped where there is no period.
+    wide = columns if periodic == "x" else columns + 2
+    high = rows + 2 + rows % 2
+    whole = _periodic(wide, high, distance)
+    row, column = np.divmod(np.arange(whole.n_cells), wide)
+    kept = (row > 0) & (row <= rows)
+    if periodic == "none":
+        kept &= (column > 0) & (column <= columns)
+    part = culled(whole, kept)
+    shifts = {"y": ROW * distance, "x": 0.0 if periodic == "x" else distance}
+    moved = {
+        f"{axis}_{place}": getattr(part, f"{axis}_{place}") - shift
+        for axis, shift in shifts.items()
+        for place in ("cell", "edge", "vertex")
+        if shift
+    }
+    mesh = replace(part, **moved, x_period=part.x_period if periodic == "x" else 0.0, y_period=0.0)
+    remember_validated(mesh)
+    return mesh
+
+
+def _counts(hexagons: Sequence[int], periodic: str) -> tuple[int, int]:
+    if periodic not in PERIODIC:
+        raise MeshError(f"a plane cannot be periodic in '{periodic}'; choose one of {', '.join(PERIODIC)}")
+    columns, rows = (plain_count("the number of hexagons", count) for count in _pair("hexagons", hexagons))
+    fewest = (FEWEST_COLUMNS if "x" in periodic else 1, FEWEST_ROWS if "y" in periodic else 1)
+    for what, count, least in zip(("a row", "a column"), (columns, rows), fewest, strict=True):
+        if count < least:
+            raise MeshError(f"{count} hexagons in {what} are too few; a plane periodic in {periodic} needs {least}")
+    if "y" in periodic and rows % 2:
+        raise MeshError(
+            f"{rows} rows of hexagons cannot repeat themselves in y, as every other row is shifted; take {rows + 1}"
+        )
+    return columns, rows
+
+
+def _lengths(plane: Sequence[float]) -> tuple[float, float]:
+    width, height = (plain_number("a length of the plane", length) for length in _pair("plane", plane))
+    for length in (width, height):
+        if not 0.0 < length < math.inf:
+            raise MeshError(f"a length of the plane is {length:g} m; it must be positive and finite")
+    return width, height
+
+
+def _pair(what: str, values: Sequence[float]) -> tuple[float, float]:
+    try:
+        first, second = values
+    except (TypeError, ValueError):
+        raise MeshError(f"{what} is {values!r}; give two numbers, along x and along y") from None
+    return first, second
+
+
+def _distance(lengths: tuple[float, float], columns: int, rows: int) -> float:
+    """The distance of cells that fit the width; raise `MeshError` unless their rows fit the height."""
+    width, height = lengths
+    distance = width / columns
+    if abs(ROW * distance * rows / height - 1.0) > ROUNDING:
+        fitting = height / (ROW * distance)
+        nearest = max(2 * round(0.5 * fitting), FEWEST_ROWS)
+        raise MeshError(
+            f"{rows} rows of hexagons {distance:.10g} m apart are {ROW * distance * rows:.10g} m high, not "
+            f"{height:.10g} m; give that height, or near it {nearest} rows of {ROW * distance * nearest:.10g} m"
+        )
+    return distance
+
+
+def _periodic(columns: int, rows: int, distance: float) -> VoronoiMesh:
+    """The mesh of so many columns and rows, periodic in both directions."""
+    plane = Plane(columns * distance, rows * ROW * distance)
+    return plane_mesh(_points(columns, rows, distance), _triangles(columns, rows), plane)
+
+
+def _points(columns: int, rows: int, distance: float) -> Array:
+    """Centres (n, 3) row by row, those of odd rows half a distance to the east of those of even ones."""
+    row, column = np.divmod(np.arange(columns * rows), columns)
+    x = (column + 0.25 + 0.5 * (row % 2)) * distance
+    return np.column_stack([x, (row + 0.5) * (ROW * distance), np.zeros(len(x))])
+
+
+def _triangles(columns: int, rows: int) -> Index:
+    """Two counter-clockwise triangles for each cell: with its eastern and an upper neighbour, and with both upper."""
+    row, column = np.divmod(np.arange(columns * rows), columns)
+
+    def number(column: Index, row: Index) -> Index:
+        return (row % rows) * columns + column % columns
+
+    own, east = number(column, row), number(column + 1, row)
+    upper_east = number(column + row % 2, row + 1)
+    upper_west = number(column + row % 2 - 1, row + 1)
+    return np.concatenate([np.column_stack([own, east, upper_east]), np.column_stack([own, upper_east, upper_west])])

@@ -1,0 +1,133 @@
+"""Commands on planes: meshes of hexagons, their quality, runs, comparison with the exact solution; and refusals."""
+
+import json
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mesh import MeshWarning, hexagon_mesh, read_mesh
+from mesh.conventions import MESH_VARIABLES
+from tests.planar_tool import write_planar_file
+from tests.trisk.conftest import Call
+from tests.under_mpiexec import needs_mpi, on_processes
+
+LENGTHS = "1e6,866025.4037844386"
+RUN = ("--days", 0.02, "--snapshot-hours", 0.24, "--diagnostics-hours", 0.24, "--dt", 216)
+
+
+@pytest.fixture(scope="module")
+def plane_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    from mesh import write_mesh
+
+    path = tmp_path_factory.mktemp("plane") / "plane.nc"
+    write_mesh(hexagon_mesh((1e6, 5e5 * np.sqrt(3.0)), (12, 12)), path)
+    return path
+
+
+def test_a_mesh_is_made_and_measured(trisk: Call, tmp_path: Path) -> None:
+    path = tmp_path / "channel.nc"
+    code, out, err = trisk("mesh", "--plane", LENGTHS, "--periodic", "x", "--hexagons", "10,10", "-o", path)
+    assert (code, err) == (0, "")
+    assert "1.000000" in out
+    made, expected = read_mesh(path), hexagon_mesh((1e6, 866025.4037844386), (10, 10), "x")
+    for variable in MESH_VARIABLES:
+        np.testing.assert_array_equal(getattr(made, variable.name), getattr(expected, variable.name))
+    measured = json.loads(trisk("quality", path, "--json")[1])
+    assert measured["q_min"] == pytest.approx(1.0)
+    assert measured["residual"] < 1e-13
+
+
+def test_quality_of_a_file_of_the_community(trisk: Call, tmp_path: Path) -> None:
+    write_planar_file(tmp_path / "hexagons.nc", 6, 8, 1e4)
+    with pytest.warns(MeshWarning, match="made edgesOnEdge"):
+        code, out, _ = trisk("quality", tmp_path / "hexagons.nc", "--json")
+    assert code == 0
+    assert json.loads(out)["cells"] == 48
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--plane", "1e6,1e6", "--hexagons", "10,10"), "866025.4038 m high, not 1000000 m"),
+        (("--plane", LENGTHS), "a mesh on a plane needs its hexagons; give --hexagons NX,NY"),
+        (("--hexagons", "10,10", "--cells", 42), "--periodic and --hexagons go with --plane LX,LY"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--cells", 42), "only --periodic and --hexagons go with --plane"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast", "world-ocean"), "--coast and --coast-width do not go"),
+        (("--plane", LENGTHS, "--hexagons", "10,1.5"), "give two whole numbers with a comma between them"),
+        (("--plane", "1e6", "--hexagons", "10,10"), "give two numbers with a comma between them"),
+    ],
+)
+def test_what_cannot_be_made_is_told_in_a_line(
+    trisk: Call, tmp_path: Path, options: tuple[object, ...], words: str
+) -> None:
+    code, _, err = trisk("mesh", *options, "-o", tmp_path / "plane.nc")
+    assert code == 2
+    assert words in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "plane.nc").exists()
+
+
+@pytest.fixture
+def run(trisk: Call, plane_file: Path, tmp_path: Path) -> Path:
+    code, out, err = trisk("run", "inertia-gravity-wave", "--mesh", plane_file, *RUN, "-o", tmp_path / "run", "--quiet")
+    assert (code, out, err) == (0, "", "")
+    return tmp_path / "run"
+
+
+def test_a_run_is_compared_with_the_exact_solution(trisk: Call, run: Path) -> None:
+    code, out, err = trisk("compare", run, "--json")
+    assert (code, err) == (0, "")
+    assert '"exact solution"' in out
+    found = json.loads(out)
+    assert found["maps"] == []
+    assert trisk("compare", run)[0] == 0
+
+
+def test_what_is_of_the_sphere_alone_is_refused_in_a_sentence(
+    trisk: Call, run: Path, plane_file: Path, tmp_path: Path
+) -> None:
+    for words in (
+        ("plot", run),
+        ("film", run, "--field", "thickness", "-o", tmp_path / "film.gif"),
+        ("convert", run, "--to", "ugrid", "-o", tmp_path / "run.nc"),
+        ("spectra", run, "-o", tmp_path / "spectra"),
+        ("compare", run, "--reference", shutil.copytree(run, tmp_path / "again")),
+        ("cull", plane_file, "--keep", "0,10,0,10", "-o", tmp_path / "part.nc"),
+        ("mesh", "--nested", plane_file, "--cells", 400, "-o", tmp_path / "nested.nc"),
+        ("bench", "--mesh", plane_file),
+        ("run", "inertia-gravity-wave", "--cells", 42, "-o", tmp_path / "other"),
+        ("run", "williamson2", "--mesh", plane_file, "-o", tmp_path / "other"),
+        ("adapt", "inertia-gravity-wave", "--cells", 42, "--fine", 162, "-o", tmp_path / "adapted"),
+        ("reference", "inertia-gravity-wave", "-o", tmp_path / "reference.nc"),
+    ):
+        code, _, err = trisk(*words)
+        assert code == 2, (words, err)
+        assert "on a plane" in err, (words, err)
+        assert err.strip().count("\n") == 0, (words, err)
+
+
+def test_planes_are_partitioned_without_a_map(trisk: Call, plane_file: Path, tmp_path: Path) -> None:
+    pytest.importorskip("pymetis")
+    code, _, err = trisk("partition", plane_file, "--blocks", 4, "-o", tmp_path)
+    assert (code, err) == (0, "")
+    assert {path.name for path in tmp_path.iterdir()} == {"graph.info", "graph.info.part.4"}
+
+
+def test_the_case_is_listed(trisk: Call) -> None:
+    assert "inertia-" in trisk("cases")[1]
+    code, out, _ = trisk("cases", "inertia-gravity-wave")
+    assert code == 0
+    assert "coriolis_parameter" in out
+    assert "radius" not in out
+
+
+@needs_mpi
+def test_processes_share_a_run_on_a_plane(run: Path, plane_file: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "trisk", "run", "inertia-gravity-wave", "--mesh", plane_file, *RUN]
+    code, output = on_processes(2, [*command, "-o", tmp_path / "shared", "--quiet"])
+    assert code == 0, output
+    for name in ("history.nc", "diagnostics.nc"):
+        assert (tmp_path / "shared" / name).read_bytes() == (run / name).read_bytes()
