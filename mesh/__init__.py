@@ -19,6 +19,7 @@ from mesh.generation.pipeline import scvt_mesh
 from mesh.mesh_request import MeshRequest
 from mesh.partition.partition import Partition, partition_mesh
 from mesh.parts.sea_cells import cull_mesh
+from mesh.plane.generation import mesh_on_plane
 from mesh.plane.hexagons import hexagon_mesh
 from mesh.plane.periodic import periodic_mesh
 from mesh.regions.find import find_region
@@ -39,6 +40,7 @@ __all__ = [
     "find_region",
     "hexagon_mesh",
     "mesh_from_points",
+    "mesh_on_plane",
     "mesh_quality",
     "normal_component",
     "partition_mesh",

@@ -6,8 +6,9 @@ from typing import Any
 _PLACES = {
     "mesh": (
         *("MeshError", "MeshRequest", "MeshWarning", "Operators", "Partition", "Quality", "Region", "VoronoiMesh"),
-        *("build_operators", "cull_mesh", "find_region", "hexagon_mesh", "mesh_from_points", "mesh_quality"),
+        *("build_operators", "cull_mesh", "find_region", "hexagon_mesh", "mesh_from_points", "mesh_on_plane"),
         *(
+            "mesh_quality",
             "normal_component",
             "partition_mesh",
             "periodic_mesh",

@@ -8,12 +8,11 @@ from mesh.coast.sea_cells import SeaCells
 from mesh.coast.sea_topology import sea_topology
 from mesh.density.named import Density, density_at, uniform
 from mesh.density.record import name_of, source_of
+from mesh.discrete.build import validated
 from mesh.discrete.metrics import AtWalls, compute_metrics
-from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError
 from mesh.geometry.sphere import arc_length, normalize, triangle_area
-from mesh.validated import remember_validated
-from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Topology, VoronoiMesh
+from mesh.voronoi_mesh import Topology, VoronoiMesh
 
 ROUND_OFF = 1e-12
 """Generators nearer to the coast than this, in radians, would be on it but for rounding."""
@@ -34,17 +33,10 @@ def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> Vo
     topology, places = sea_topology(sea)
     at_walls = _at_walls(sea, generators, topology, portions_of(sea, generators), places)
     metrics = compute_metrics(generators, topology, at_walls)
-    mesh = VoronoiMesh(
-        **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
-        **{name: getattr(metrics, name) for name in METRICS_NAMES},
-        mesh_density=density_at(density, generators),
-        sphere_radius=1.0,
-        density_name=name_of(density),
-        density_source=source_of(density),
+    values = density_at(density, generators)
+    return validated(
+        topology, metrics, mesh_density=values, density_name=name_of(density), density_source=source_of(density)
     )
-    validate_mesh(mesh, fresh_metrics=True)
-    remember_validated(mesh)
-    return mesh
 
 
 def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Index) -> AtWalls:

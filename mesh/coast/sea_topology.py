@@ -18,6 +18,15 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
     """
     corners = corners_of(sea)
     places, cells_on_vertex, vertex_of = _vertices(sea, corners)
+    return connected(corners, cells_on_vertex, vertex_of), places
+
+
+def connected(corners: Corners, cells_on_vertex: Index, vertex_of: Index) -> Topology:
+    """The connectivity of cells with these corners, whose vertices are `vertex_of` (n_corners,).
+
+    `cells_on_vertex` (n_vertices, 3) are counter-clockwise; at the boundary they are the cell that it enters there,
+    with the sea to its left, the one that it leaves, and none. Edges are numbered after their lowest cells.
+    """
     cells_on_edge, edge_of = _edges(corners)
     cell_rings = _rings(corners, edge_of, vertex_of)
     sizes, across, edges, vertices = cell_rings
@@ -26,7 +35,7 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
     first = np.zeros(len(cells_on_edge), np.int64)
     rows = np.flatnonzero(cells_on_edge[edge_of, 0] == corners.cells)
     first[edge_of[rows]] = rows
-    topology = Topology(
+    return Topology(
         n_edges_on_cell=sizes,
         cells_on_cell=across,
         edges_on_cell=edges,
@@ -39,7 +48,6 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
         edges_on_vertex=_edges_on_vertex(corners, cells_on_vertex, vertex_of, edge_of),
         boundary_vertex=(cells_on_vertex[:, 2] == FILL).astype(np.int32),
     )
-    return topology, places
 
 
 def _preceding(corners: Corners) -> Index:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from mesh.conventions import MeshOutline
 from mesh.density.gridded import FileDensity, Shaping, read_density
 from mesh.density.named import NAMED, Density, uniform
+from mesh.density.planar import CIRCLE, RefinedDisc, named_on_plane
 from mesh.density.scattered import density_from_cells
 from mesh.errors import MeshError
 from mesh.geometry.sphere import normalize
@@ -28,6 +29,8 @@ def name_of(density: Density) -> str:
     """The name of a density in a mesh: that of a named one, of a file, or of a function."""
     if isinstance(density, FileDensity):
         return str(density.path)
+    if isinstance(density, RefinedDisc):
+        return CIRCLE
     for name, known in NAMED.items():
         if type(density) is type(known) and density == known:
             return name
@@ -55,6 +58,8 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
     A mesh of which nothing is told has the density at its centres, interpolated between them.
     """
     name = mesh.density_name
+    if not mesh.on_a_sphere:
+        return _density_on_plane(mesh)
     if name in NAMED:
         return NAMED[name], ""
     if mesh.density_source:
@@ -64,14 +69,21 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
         return None, f"unknown, since the density was {what}"
     if np.ptp(mesh.mesh_density) == 0.0:
         return uniform, ""
-    if not mesh.on_a_sphere:
-        return None, "unknown, since the density on a plane is known where it is uniform alone"
     if not (np.isfinite(mesh.mesh_density).all() and mesh.mesh_density.min() > 0.0):
         return None, "unknown, since the density at the centres is not positive and finite everywhere"
     if mesh.boundary_vertex.any():
         return None, "unknown, since a mesh with walls does not hold the density between all of its cells"
     between = density_from_cells(normalize(mesh.cell_points), mesh.mesh_density, mesh.cells_on_vertex)
     return between, "for the density interpolated between the cells"
+
+
+def _density_on_plane(mesh: VoronoiMesh) -> tuple[Density | None, str]:
+    """The same on a plane, whose lengths are its periods, or reach from wall to wall."""
+    if not mesh.density_name and np.ptp(mesh.mesh_density) == 0.0:
+        return uniform, ""
+    periods, farthest = np.array([mesh.x_period, mesh.y_period]), mesh.vertex_points[:, :2].max(axis=0)
+    density = named_on_plane(mesh.density_name, np.where(periods > 0.0, periods, farthest))
+    return density, "" if density is not None else "unknown, since the density on a plane is known by its name alone"
 
 
 def _from_source(source: str, name: str) -> tuple[Density | None, str]:

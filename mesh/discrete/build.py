@@ -1,5 +1,7 @@
 """From generators to a validated mesh."""
 
+from typing import Any
+
 import numpy as np
 
 from mesh.arrays import Array, Index
@@ -8,11 +10,10 @@ from mesh.discrete.metrics import compute_metrics
 from mesh.discrete.topology import build_topology
 from mesh.discrete.validate import validate_mesh
 from mesh.errors import MeshError
-from mesh.geometry.plane import Plane
 from mesh.geometry.sphere import normalize
 from mesh.triangulation.delaunay import delaunay
 from mesh.validated import remember_validated
-from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, VoronoiMesh
+from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES, Metrics, Topology, VoronoiMesh
 
 
 def mesh_from_points(
@@ -34,34 +35,16 @@ def mesh_from_points(
     points = normalize(points)
     topology = build_topology(delaunay(points) if triangles is None else triangles, len(points))
     metrics = compute_metrics(points, topology)
+    return validated(topology, metrics, mesh_density=density_at(density, points), density_name=density_name)
+
+
+def validated(topology: Topology, metrics: Metrics, sphere_radius: float = 1.0, **others: Any) -> VoronoiMesh:
+    """The mesh of this connectivity, these metrics, and `others` of its attributes; raise `MeshError` if it is none."""
     mesh = VoronoiMesh(
         **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
         **{name: getattr(metrics, name) for name in METRICS_NAMES},
-        mesh_density=density_at(density, points),
-        sphere_radius=1.0,
-        density_name=density_name,
-    )
-    validate_mesh(mesh, fresh_metrics=True)
-    remember_validated(mesh)
-    return mesh
-
-
-def plane_mesh(points: Array, triangles: Index, plane: Plane) -> VoronoiMesh:
-    """The validated Voronoi mesh of generators `points` (n_cells, 3), metres, on a plane periodic in both directions.
-
-    `triangles` is their Delaunay triangulation across the seams, counter-clockwise seen from above. Raises `MeshError`
-    where it does not close the plane.
-    """
-    topology = build_topology(triangles, len(points), plane.handles)
-    metrics = compute_metrics(points, topology, surface=plane)
-    mesh = VoronoiMesh(
-        **{name: getattr(topology, name) for name in TOPOLOGY_NAMES},
-        **{name: getattr(metrics, name) for name in METRICS_NAMES},
-        mesh_density=np.ones(len(points)),
-        sphere_radius=0.0,
-        density_name="uniform",
-        x_period=plane.x_period,
-        y_period=plane.y_period,
+        sphere_radius=sphere_radius,
+        **others,
     )
     validate_mesh(mesh, fresh_metrics=True)
     remember_validated(mesh)

@@ -170,13 +170,22 @@ def _centroid_distances(mesh: VoronoiMesh, density: Density) -> tuple[Array, flo
     """Distances (n_cells,) from generators to centroids, and the mean spacing, both on the unit sphere or the plane."""
     surface = surface_of(mesh)
     area = float(mesh.area_cell.sum()) / mesh.length_unit**2 if has_walls(mesh) else surface.area
-    distances = _ways_to_centroids(mesh, density) if mesh.on_a_sphere else _ways_to_plane_centroids(mesh)
+    distances = _ways_to_centroids(mesh, density) if mesh.on_a_sphere else _ways_to_plane_centroids(mesh, density)
     return distances, surface.mean_spacing(mesh.n_cells, area)
 
 
-def _ways_to_plane_centroids(mesh: VoronoiMesh) -> Array:
-    """Distances (n_cells,) of generators from the centroids of their cells in a plane, under uniform density."""
-    return surface_of(mesh).distance(mesh.cell_points, plane_centroids(mesh))
+def _ways_to_plane_centroids(mesh: VoronoiMesh, density: Density) -> Array:
+    """Distances (n_cells,), metres, of generators from the centroids of their cells in a plane."""
+    surface, points = surface_of(mesh), mesh.cell_points
+    if density is uniform:
+        return surface.distance(points, plane_centroids(mesh))
+    starts, vertices = _vertex_rings(mesh)
+    near = np.repeat(points, np.diff(starts), axis=0)
+    corners = near + surface.shortest(mesh.vertex_points[vertices] - near)
+    cells = WeightedCells(lambda places: density(surface.onto(places)), mesh.n_cells, is_flat=True)
+    sums = cells.integrate(points, corners, starts, np.arange(starts[-1], dtype=np.int32))
+    distances: Array = np.linalg.norm(sums[:, 1:4], axis=1) / sums[:, 4]
+    return distances
 
 
 def _ways_to_centroids(mesh: VoronoiMesh, density: Density) -> Array:

@@ -72,14 +72,14 @@ def new_pair(
 
 
 @numba.njit(cache=True)
-def _move(points: Array, scale: float, direction: Array, length: float, cell: int, trial: Array) -> None:
+def _move(points: Array, scale: float, direction: Array, length: float, cell: int, is_flat: bool, trial: Array) -> None:
     """Write points + length * scale * direction, back on the sphere, to `trial`; points without a step stay exact."""
     dx, dy, dz = direction[3 * cell], direction[3 * cell + 1], direction[3 * cell + 2]
     x = points[cell, 0] + length * scale * dx
     y = points[cell, 1] + length * scale * dy
     z = points[cell, 2] + length * scale * dz
     still = dx == 0.0 and dy == 0.0 and dz == 0.0
-    factor = 1.0 if still else 1.0 / np.sqrt(x * x + y * y + z * z)
+    factor = 1.0 if still or is_flat else 1.0 / np.sqrt(x * x + y * y + z * z)
     trial[cell, 0], trial[cell, 1], trial[cell, 2] = x * factor, y * factor, z * factor
 
 
@@ -96,11 +96,13 @@ def combine_and_move(
     scales: Array,
     length: float,
     slot: int,
+    is_flat: bool,
     trial: Array,
     partials: Array,
 ) -> None:
     """Write -(scale B g + sum of factors times pairs), made tangential, to steps[slot], and move to `trial`.
 
+    In the plane, `is_flat`, they are tangential anyway, z being zero.
     The first column of `partials` gets the largest squared displacement of a step of length one.
     """
     for block in numba.prange(len(partials)):
@@ -115,25 +117,27 @@ def combine_and_move(
                 direction[index] -= step_factor * step[index] + change_factor * change[index]
         largest = 0.0
         for cell in range(first, last):
-            radial = (
-                direction[3 * cell] * points[cell, 0]
-                + direction[3 * cell + 1] * points[cell, 1]
-                + direction[3 * cell + 2] * points[cell, 2]
-            )
+            radial = 0.0
+            if not is_flat:
+                radial = (
+                    direction[3 * cell] * points[cell, 0]
+                    + direction[3 * cell + 1] * points[cell, 1]
+                    + direction[3 * cell + 2] * points[cell, 2]
+                )
             square = 0.0
             for axis in range(3):
                 direction[3 * cell + axis] -= radial * points[cell, axis]
                 square += direction[3 * cell + axis] ** 2
             largest = max(largest, square * scales[cell] ** 2)
-            _move(points, scales[cell], direction, length, cell, trial)
+            _move(points, scales[cell], direction, length, cell, is_flat, trial)
         partials[block, 0] = largest
 
 
 @numba.njit(parallel=True, cache=True)
-def move_all(points: Array, scales: Array, direction: Array, length: float, trial: Array) -> None:
+def move_all(points: Array, scales: Array, direction: Array, length: float, is_flat: bool, trial: Array) -> None:
     """Move points (n, 3) by `length` times the direction to `trial`."""
     for cell in numba.prange(len(points)):
-        _move(points, scales[cell], direction, length, cell, trial)
+        _move(points, scales[cell], direction, length, cell, is_flat, trial)
 
 
 class PairMemory:

@@ -10,6 +10,8 @@ In two dimensions a hat function of any width has about the same energy, so one 
 positive definite, and costs a tenth of an evaluation of the gradient.
 """
 
+from collections.abc import Sequence
+
 import numba
 import numpy as np
 from numpy.typing import NDArray
@@ -159,7 +161,7 @@ def _interpolation_weights(points: Array, grid: Array, triangles: Index, located
     return targets, weights
 
 
-class _Transfer:
+class Transfer:
     """Linear interpolation from a coarse grid (m points) to finer points (n), and its transpose.
 
     Fine point i is the sum over k of `weights[i, k]` times coarse point `targets[i, k]`.
@@ -190,10 +192,9 @@ class _Transfer:
 class MultilevelPreconditioner:
     """B = I + gain * sum P_l P_l^T for points that stay near where they were when it was made."""
 
-    def __init__(self, points: Array, gain: float) -> None:
-        """Make the transfers for unit vectors `points` (n, 3)."""
-        self._gain = gain
-        self._transfers = _transfers(points)
+    def __init__(self, transfers: Sequence[Transfer], gain: float) -> None:
+        """Take the transfers from the finest grid to the points, then from each grid to the next finer one."""
+        self._gain, self._transfers = gain, transfers
 
     def apply(self, vector: Array, result: Array) -> None:
         """Write B times `vector` (n, 3) to `result`."""
@@ -208,11 +209,16 @@ class MultilevelPreconditioner:
         self._transfers[0].prolong_add(total, vector, 1.0, result)
 
 
-def _transfers(points: Array) -> list[_Transfer]:
+def preconditioner_on_sphere(points: Array, gain: float) -> MultilevelPreconditioner:
+    """The preconditioner for unit vectors `points` (n, 3)."""
+    return MultilevelPreconditioner(_transfers(points), gain)
+
+
+def _transfers(points: Array) -> list[Transfer]:
     """Transfers from the finest grid to `points`, then from each grid to the next finer one, finest first."""
     grid, triangles = icosahedral_mesh(0)
     located = _locate(points, grid, triangles, np.zeros(1, np.int32), False)
-    between: list[_Transfer] = []
+    between: list[Transfer] = []
     rank: Index = np.arange(len(grid), dtype=np.int32)
     while CELLS_PER_GRID_POINT * (4 * len(grid) - 6) <= 1.2 * len(points):
         coarse_rank, n_coarse = rank, len(grid)
@@ -222,6 +228,6 @@ def _transfers(points: Array) -> list[_Transfer]:
         rank = inverse_order(order)
         kept = np.repeat(np.arange(n_coarse, dtype=np.int32)[:, None], 2, axis=1)
         parents = np.concatenate([kept, ends])[order]
-        between.append(_Transfer(coarse_rank[parents], np.full(parents.shape, 0.5), n_coarse))
+        between.append(Transfer(coarse_rank[parents], np.full(parents.shape, 0.5), n_coarse))
     targets, weights = _interpolation_weights(points, grid, triangles, located)
-    return [_Transfer(rank[targets], weights, len(grid)), *between[::-1]]
+    return [Transfer(rank[targets], weights, len(grid)), *between[::-1]]

@@ -18,9 +18,11 @@ from mesh.arrays import Array, Index
 from mesh.density.named import Density, uniform
 from mesh.errors import MeshError
 from mesh.generation.lbfgs import PairMemory, all_dots, combine_and_move, move_all, new_pair
-from mesh.generation.multilevel import MultilevelPreconditioner
+from mesh.generation.multilevel import MultilevelPreconditioner, preconditioner_on_sphere
 from mesh.geometry.sphere import mean_spacing
+from mesh.geometry.surface import UNIT_SPHERE, Surface
 from mesh.integrals.moments import evaluate, number_of_blocks
+from mesh.integrals.plane_moments import evaluate_in_plane
 from mesh.integrals.weighted_moments import WeightedCells
 from mesh.mesh_request import MeshRequest
 from mesh.triangulation.moving import MovingCells, Triangulation
@@ -57,7 +59,7 @@ PATIENCE_UNDER_DENSITY = 1000
 
 @dataclass
 class History:
-    """What each iteration reached: energy (radian^2 steradian), residual (mean spacings), seconds since the start."""
+    """What each iteration reached: energy (radian^2 steradian, m^4 in a plane), residual (mean spacings), seconds."""
 
     energy: list[float] = field(default_factory=list)
     residual: list[float] = field(default_factory=list)
@@ -154,13 +156,13 @@ class _State:
 
 
 class Optimizer:
-    """Moves points (n, 3) on the unit sphere towards an SCVT.
+    """Moves points (n, 3) on the unit sphere, or on another surface, towards an SCVT.
 
     `method` is `lbfgs` or `lloyd`, which is the same loop without a memory and without coarse grids. `triangles` may
     give a valid triangulation of the points. `density` is that of the mass, uniform if None; `fixed` (n,) marks
     generators that stay where they are. `cells` may give their cells, where these are not all of the sphere, and their
-    mean `spacing` (radians); coarse grids, which cover the whole sphere, only cost iterations there. Results do not
-    depend on the number of threads.
+    mean `spacing` in lengths of the `surface`; coarse grids, which cover the whole sphere, only cost iterations there,
+    so that these cells may have a `preconditioner` of their own. Results do not depend on the number of threads.
     """
 
     def __init__(
@@ -172,14 +174,18 @@ class Optimizer:
         fixed: NDArray[np.bool_] | None = None,
         cells: MovingCells | None = None,
         spacing: float | None = None,
+        surface: Surface = UNIT_SPHERE,
+        preconditioner: MultilevelPreconditioner | None = None,
     ) -> None:
         if method not in ("lbfgs", "lloyd"):
             raise MeshError(f"there is no optimisation method named '{method}'; choose lbfgs or lloyd")
         quasi_newton = method == "lbfgs"
         self._spacing = mean_spacing(len(points)) if spacing is None else spacing
         self._triangulation = Triangulation(points, triangles) if cells is None else cells
-        coarse_grids = quasi_newton and cells is None
-        self._preconditioner = MultilevelPreconditioner(points, GAIN) if coarse_grids else None
+        self._surface, self._preconditioner = surface, preconditioner if quasi_newton else None
+        if quasi_newton and cells is None:
+            self._preconditioner = preconditioner_on_sphere(points, GAIN)
+        coarse_grids = self._preconditioner is not None
         self._memory = PairMemory(PAIRS if quasi_newton else 0, len(points))
         self._current = _State(points, coarse_grids)
         self._trial = _State(points, coarse_grids)
@@ -188,12 +194,12 @@ class Optimizer:
         self._cell_partials = np.empty((n_blocks, 3))
         self._gradient_square = 0.0
         self._fixed = fixed
-        self._evaluate: Callable[..., None] = evaluate
+        self._evaluate: Callable[..., None] = evaluate_in_plane if surface.is_flat else evaluate
         self._weighted = density is not None or fixed is not None
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
         self._least_energy, self._patience = np.inf, PATIENCE
         if self._weighted:
-            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often=True).evaluate
+            self._evaluate = WeightedCells(density or uniform, len(points), fixed, True, surface.is_flat).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
 
@@ -271,6 +277,7 @@ class Optimizer:
             state.scales,
             1.0,
             slot,
+            self._surface.is_flat,
             self._trial.points,
             largest,
         )
@@ -284,7 +291,8 @@ class Optimizer:
     def _move(self, slot: int, length: float) -> None:
         """Trial points at another length along the direction in `slot`."""
         state = self._current
-        move_all(state.points, state.scales, self._memory.steps[slot], length, self._trial.points)
+        direction, is_flat = self._memory.steps[slot], self._surface.is_flat
+        move_all(state.points, state.scales, direction, length, is_flat, self._trial.points)
 
     def _evaluate_trial(self, direction: Array) -> None:
         """Triangulation, energy and gradient at the trial points, and the slope along `direction` there."""
@@ -303,10 +311,7 @@ class Optimizer:
         )
         state.energy = float(self._cell_partials[:, 0].sum())
         state.slope = float(self._cell_partials[:, 1].sum())
-        # The squared tangent of the angle between generator and moment, made the chord to the constrained centroid.
-        square = float(self._cell_partials[:, 2].max())
-        root = np.sqrt(1.0 + square)
-        state.residual = float(np.sqrt(2.0 * square / (root * (1.0 + root)))) / self._spacing
+        state.residual = self._surface.to_centroid(float(self._cell_partials[:, 2].max())) / self._spacing
 
     def _acceptable(self, slope: float, length: float) -> bool:
         """Whether the energy falls (Armijo) or, where its error hides that, the slope does.

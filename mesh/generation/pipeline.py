@@ -20,14 +20,13 @@ from mesh.generation.well_centered import GOAL, WellCentered, well_center
 from mesh.geometry.sphere import normalize
 from mesh.mesh_request import MeshRequest
 from mesh.plain import plain_count, plain_number
-from mesh.plane.hexagons import hexagon_mesh
 from mesh.validated import remember_validated
 from mesh.voronoi_mesh import VoronoiMesh
 
 
 @dataclass(frozen=True)
 class GeneratedMesh:
-    """A validated mesh on the unit sphere, or on a plane, and, if it was made well-centred, what that cost."""
+    """A validated mesh on the unit sphere and, if it was made well-centred, what that cost."""
 
     mesh: VoronoiMesh
     centring: WellCentered | None = None
@@ -50,13 +49,10 @@ def scvt_mesh(
     density_floor: float = MeshRequest.density_floor,
     density_power: float = MeshRequest.density_power,
     density_smoothing: int = MeshRequest.density_smoothing,
-    plane: tuple[float, float] | None = MeshRequest.plane,
-    periodic: str = MeshRequest.periodic,
-    hexagons: tuple[int, int] | None = MeshRequest.hexagons,
     checkpoint: str | os.PathLike[str] | None = None,
     resume: bool = False,
 ) -> VoronoiMesh:
-    """A validated SCVT on the unit sphere, or on a plane; `mesh.mesh_request.MeshRequest` explains the arguments.
+    """A validated SCVT on the unit sphere; `mesh.mesh_request.MeshRequest` explains the arguments.
 
     `callback` is called with each iterate. `checkpoint` names a file that keeps the best points if the generation
     fails or is interrupted; with `resume`, the same call continues from there. Raises `MeshError` if no such mesh can
@@ -65,7 +61,7 @@ def scvt_mesh(
     if not isinstance(nested, VoronoiMesh | None):
         raise MeshError(f"the mesh to refine is {nested!r}; it must be a VoronoiMesh, such as read_mesh gives")
     request = MeshRequest(
-        cells=None if cells is None and (nested, plane) != (None, None) else plain_count("the number of cells", cells),
+        cells=None if cells is None and nested is not None else plain_count("the number of cells", cells),
         density=density,
         start=start,
         method=method,
@@ -79,9 +75,6 @@ def scvt_mesh(
         density_floor=plain_number("the floor of the density", density_floor),
         density_power=plain_number("the power of the density", density_power),
         density_smoothing=plain_count("the number of passes of smoothing", density_smoothing),
-        plane=plane,
-        periodic=periodic,
-        hexagons=hexagons,
     )
     if checkpoint is None:
         if resume:
@@ -101,8 +94,6 @@ def generate_mesh(
 
     A nested mesh keeps no checkpoint. Raises `MeshError` if the request cannot be met.
     """
-    if is_on_plane(request):
-        return GeneratedMesh(_on_plane(request))
     begin = time.perf_counter()
     if request.nested is None:
         cells_of(request)
@@ -121,23 +112,6 @@ def generate_mesh(
         centring = _well_centered(result, density, limits.since(begin).seconds)
         result = replace(result, points=centring.points, triangles=centring.triangles)
     return GeneratedMesh(mesh_of(result, density), centring)
-
-
-def is_on_plane(request: MeshRequest) -> bool:
-    """Whether the request is for a mesh on a plane; raises `MeshError` where it only says how such a one is to be."""
-    of_plane = (request.periodic, request.hexagons) != (MeshRequest.periodic, MeshRequest.hexagons)
-    if request.plane is None and of_plane:
-        raise MeshError("--periodic and --hexagons go with --plane LX,LY; give its lengths, or leave them out")
-    return request.plane is not None
-
-
-def _on_plane(request: MeshRequest) -> VoronoiMesh:
-    if replace(request, plane=None, periodic=MeshRequest.periodic, hexagons=None) != MeshRequest():
-        raise MeshError("only --periodic and --hexagons go with --plane; leave all else out that tells of the mesh")
-    if request.hexagons is None:
-        raise MeshError("a mesh on a plane needs its hexagons; give --hexagons NX,NY")
-    assert request.plane is not None
-    return hexagon_mesh(request.plane, request.hexagons, request.periodic)
 
 
 def mesh_of(result: ScvtResult, density: Density) -> VoronoiMesh:

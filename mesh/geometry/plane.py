@@ -1,5 +1,6 @@
 """The plane z = 0 as a surface of meshes (`mesh.geometry.surface`), which may repeat itself in x and in y."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -156,6 +157,10 @@ class Plane:
     def mean_spacing(self, n_cells: int, area: float) -> float:
         """Metres."""
         return float(hexagon_spacing(np.array(area / n_cells)))
+
+    def to_centroid(self, square: float) -> float:
+        """Its root."""
+        return math.sqrt(square)
 
     def curve_places(self, points: Array) -> Array:
         """The smallest square that holds the points, as the first face of the cube."""

@@ -101,6 +101,12 @@ class Surface(Protocol):
     def mean_spacing(self, n_cells: int, area: float) -> float:
         """Distance between neighbours if `n_cells` cells of this total area were equal hexagons."""
 
+    def to_centroid(self, square: float) -> float:
+        """Distance from a generator to the centroid of its cell, whose moment about it has this square, over the mass.
+
+        On the sphere that is the square of the tangent of an angle, and the distance a chord.
+        """
+
     def curve_places(self, points: Array) -> Array:
         """Vectors (n, 3) along which Hilbert curves on the faces of a cube number the points (n, 3)."""
 

@@ -1,5 +1,7 @@
 """The unit sphere as a surface of meshes (`mesh.geometry.surface`)."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -105,6 +107,11 @@ class UnitSphere:
     def mean_spacing(self, n_cells: int, area: float) -> float:
         """Radians, for an area in steradians."""
         return mean_spacing(n_cells) * float(np.sqrt(area / self.area))
+
+    def to_centroid(self, square: float) -> float:
+        """The chord that belongs to the tangent."""
+        root = math.sqrt(1.0 + square)
+        return math.sqrt(2.0 * square / (root * (1.0 + root)))
 
     def curve_places(self, points: Array) -> Array:
         """The points themselves."""

@@ -28,7 +28,7 @@ from mesh.density.scaling import within_range
 from mesh.errors import MeshError
 from mesh.geometry.cube import patch_of
 from mesh.geometry.sphere import to_lonlat
-from mesh.geometry.vectors import dot_product, triple_product, vector_between, vector_to
+from mesh.geometry.vectors import dot_product, outward, triple_product, vector_between, vector_to
 from mesh.integrals.moments import BLOCK, cell_moment
 
 CHUNK = 16384
@@ -95,6 +95,7 @@ def _quadrature_points(
     rings: Index,
     cells: Index,
     rows: Index,
+    is_flat: bool,
     nodes: Array,
 ) -> None:
     """Write the quadrature points of the `cells` (k,) to `nodes`, ring after ring, from the row `rows` (k,) on."""
@@ -109,7 +110,7 @@ def _quadrature_points(
                 x = points[cell, 0] + s * u[0] + t * v[0]
                 y = points[cell, 1] + s * u[1] + t * v[1]
                 z = points[cell, 2] + s * u[2] + t * v[2]
-                factor = 1.0 / np.sqrt(x * x + y * y + z * z)
+                factor = 1.0 if is_flat else 1.0 / np.sqrt(x * x + y * y + z * z)
                 nodes[row, 0], nodes[row, 1], nodes[row, 2] = factor * x, factor * y, factor * z
                 row += 1
             u = v
@@ -124,6 +125,7 @@ def _sum_cells(
     cells: Index,
     rows: Index,
     values: Array,
+    is_flat: bool,
     sums: Array,
 ) -> None:
     """Write the integrals of the `cells` (k,), from values of the density at the nodes, to rows of `sums`.
@@ -133,13 +135,13 @@ def _sum_cells(
     for index in numba.prange(len(cells)):
         cell, row = cells[index], rows[index]
         start, stop = ring_starts[cell], ring_starts[cell + 1]
-        px, py, pz = points[cell, 0], points[cell, 1], points[cell, 2]
+        px, py, pz = outward(points, cell, is_flat)
         u = vector_between(points, cell, circumcenters, rings[stop - 1])
         mass, radial, energy = 0.0, 0.0, 0.0
         mx, my, mz = 0.0, 0.0, 0.0
         for slot in range(start, stop):
             v = vector_between(points, cell, circumcenters, rings[slot])
-            area = triple_product(vector_to(points, cell), u, v)
+            area = triple_product((px, py, pz), u, v)
             for node in range(len(RULE)):
                 s, t = RULE[node, 0], RULE[node, 1]
                 qx = s * u[0] + t * v[0]
@@ -147,7 +149,7 @@ def _sum_cells(
                 qz = s * u[2] + t * v[2]
                 along = px * qx + py * qy + pz * qz
                 square = qx * qx + qy * qy + qz * qz
-                inverse = 1.0 / np.sqrt(1.0 + 2.0 * along + square)
+                inverse = 1.0 if is_flat else 1.0 / np.sqrt(1.0 + 2.0 * along + square)
                 weight = RULE[node, 2] * area * values[row] * inverse**3
                 cosine = (1.0 + along) * inverse
                 mass += weight
@@ -195,15 +197,23 @@ def _gradient_and_partials(
 class WeightedCells:
     """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move.
 
+    Cells are on the unit sphere or, if `is_flat`, in the plane z = 0, where x.M stands for the mass.
+
     Where the density is extremely large or small, the integrals are those of a multiple of it. With `often`, for
     callers who integrate many times, plateaus of the density are sought first, where its values are then known.
     """
 
     def __init__(
-        self, density: Density, n_cells: int, fixed: NDArray[np.bool_] | None = None, often: bool = False
+        self,
+        density: Density,
+        n_cells: int,
+        fixed: NDArray[np.bool_] | None = None,
+        often: bool = False,
+        is_flat: bool = False,
     ) -> None:
-        self._density = within_range(density)
-        self._plateaus = plateaus_of(self._density, n_cells) if often else None
+        self._density = density if is_flat else within_range(density)
+        self._plateaus = plateaus_of(self._density, n_cells) if often and not is_flat else None
+        self._is_flat = is_flat
         self._sums = np.empty((n_cells, 6))
         self._fixed = np.zeros(n_cells, bool) if fixed is None else fixed
         self._counts = np.empty(n_cells, np.int32)
@@ -227,8 +237,8 @@ class WeightedCells:
             if len(self._nodes) < ends[-1]:
                 self._nodes = np.empty((ends[-1], 3))
             rows, nodes = ends - self._counts[cells], self._nodes[: ends[-1]]
-            _quadrature_points(*mesh, cells, rows, nodes)
-            _sum_cells(*mesh, cells, rows, density_at(self._density, nodes), self._sums)
+            _quadrature_points(*mesh, cells, rows, self._is_flat, nodes)
+            _sum_cells(*mesh, cells, rows, density_at(self._density, nodes), self._is_flat, self._sums)
         empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
         if len(empty):
             longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[empty[:1]]))

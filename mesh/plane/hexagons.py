@@ -10,16 +10,16 @@ from dataclasses import replace
 import numpy as np
 
 from mesh.arrays import Array, Index
-from mesh.discrete.build import plane_mesh
+from mesh.discrete.build import validated
+from mesh.discrete.metrics import compute_metrics
+from mesh.discrete.topology import build_topology
 from mesh.errors import MeshError
 from mesh.geometry.plane import Plane
 from mesh.parts.culling import culled
-from mesh.plain import plain_count, plain_number
+from mesh.plain import plain_count
+from mesh.plane.domain import Rectangle, pair, rectangle
 from mesh.validated import remember_validated
 from mesh.voronoi_mesh import VoronoiMesh
-
-PERIODIC = ("xy", "x", "none")
-"""Directions in which a plane may repeat itself; there are walls at the other ends."""
 
 ROW = 0.5 * math.sqrt(3.0)
 """Distance of neighbouring rows, in distances of neighbouring cells."""
@@ -39,8 +39,9 @@ def hexagon_mesh(plane: Sequence[float], hexagons: Sequence[int], periodic: str 
     outermost cells reach beyond the plane by as much as they leave free of it. Raises `MeshError` where LY does not
     fit, or where there are too few cells.
     """
+    lengths = rectangle(plane, periodic)
     columns, rows = _counts(hexagons, periodic)
-    distance = _distance(_lengths(plane), columns, rows)
+    distance = _distance(lengths, columns, rows)
     if periodic == "xy":
         return _periodic(columns, rows, distance)
     # A wider periodic mesh is cut, so that no position of what is left has been wrapped where there is no period.
@@ -65,9 +66,7 @@ def hexagon_mesh(plane: Sequence[float], hexagons: Sequence[int], periodic: str 
 
 
 def _counts(hexagons: Sequence[int], periodic: str) -> tuple[int, int]:
-    if periodic not in PERIODIC:
-        raise MeshError(f"a plane cannot be periodic in '{periodic}'; choose one of {', '.join(PERIODIC)}")
-    columns, rows = (plain_count("the number of hexagons", count) for count in _pair("hexagons", hexagons))
+    columns, rows = (plain_count("the number of hexagons", count) for count in pair("hexagons", hexagons))
     fewest = (FEWEST_COLUMNS if "x" in periodic else 1, FEWEST_ROWS if "y" in periodic else 1)
     for what, count, least in zip(("a row", "a column"), (columns, rows), fewest, strict=True):
         if count < least:
@@ -79,25 +78,9 @@ def _counts(hexagons: Sequence[int], periodic: str) -> tuple[int, int]:
     return columns, rows
 
 
-def _lengths(plane: Sequence[float]) -> tuple[float, float]:
-    width, height = (plain_number("a length of the plane", length) for length in _pair("plane", plane))
-    for length in (width, height):
-        if not 0.0 < length < math.inf:
-            raise MeshError(f"a length of the plane is {length:g} m; it must be positive and finite")
-    return width, height
-
-
-def _pair(what: str, values: Sequence[float]) -> tuple[float, float]:
-    try:
-        first, second = values
-    except (TypeError, ValueError):
-        raise MeshError(f"{what} is {values!r}; give two numbers, along x and along y") from None
-    return first, second
-
-
-def _distance(lengths: tuple[float, float], columns: int, rows: int) -> float:
+def _distance(plane: Rectangle, columns: int, rows: int) -> float:
     """The distance of cells that fit the width; raise `MeshError` unless their rows fit the height."""
-    width, height = lengths
+    width, height = plane.width, plane.height
     distance = width / columns
     if abs(ROW * distance * rows / height - 1.0) > ROUNDING:
         fitting = height / (ROW * distance)
@@ -112,7 +95,11 @@ def _distance(lengths: tuple[float, float], columns: int, rows: int) -> float:
 def _periodic(columns: int, rows: int, distance: float) -> VoronoiMesh:
     """The mesh of so many columns and rows, periodic in both directions."""
     plane = Plane(columns * distance, rows * ROW * distance)
-    return plane_mesh(_points(columns, rows, distance), _triangles(columns, rows), plane)
+    points = _points(columns, rows, distance)
+    topology = build_topology(_triangles(columns, rows), len(points), plane.handles)
+    periods = {"x_period": plane.x_period, "y_period": plane.y_period}
+    metrics = compute_metrics(points, topology, surface=plane)
+    return validated(topology, metrics, 0.0, mesh_density=np.ones(len(points)), density_name="uniform", **periods)
 
 
 def _points(columns: int, rows: int, distance: float) -> Array:

@@ -22,8 +22,14 @@ class MovingCells(Protocol):
     """Cells of moving points, bounded by places on the sphere, as `Triangulation` has them."""
 
     circumcenters: Array
-    rings: Index
-    ring_starts: Index
+
+    @property
+    def ring_starts(self) -> Index:
+        """Where the ring of each cell begins (n + 1,)."""
+
+    @property
+    def rings(self) -> Index:
+        """Triangles round cells, one ring after the other."""
 
     @property
     def triangles(self) -> Index:

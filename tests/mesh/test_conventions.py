@@ -11,6 +11,8 @@ from mesh.voronoi_mesh import METRICS_NAMES, TOPOLOGY_NAMES
 def test_table_and_dataclass_name_the_same_arrays() -> None:
     arrays = {field.name for field in fields(VoronoiMesh)} - {
         "sphere_radius",
+        "x_period",
+        "y_period",
         "density_name",
         "density_source",
         "fixed_cells",

@@ -9,7 +9,11 @@ from mesh import VoronoiMesh, mesh_from_points
 from mesh.generation.generators import icosahedral_points
 from mesh.validated import is_validated, remember_validated
 
-ARRAYS = [each.name for each in fields(VoronoiMesh) if each.name.startswith(("x_", "n_", "cells_", "area", "boundary"))]
+ARRAYS = [
+    each.name
+    for each in fields(VoronoiMesh)
+    if each.name.startswith(("x_c", "x_e", "x_v", "n_", "cells_", "area", "boundary"))
+]
 
 
 @pytest.fixture

@@ -52,9 +52,9 @@ def test_quality_of_a_file_of_the_community(trisk: Call, tmp_path: Path) -> None
     ("options", "words"),
     [
         (("--plane", "1e6,1e6", "--hexagons", "10,10"), "866025.4038 m high, not 1000000 m"),
-        (("--plane", LENGTHS), "a mesh on a plane needs its hexagons; give --hexagons NX,NY"),
+        (("--plane", LENGTHS), "a mesh on a plane needs cells; give --cells N, or --hexagons NX,NY"),
         (("--hexagons", "10,10", "--cells", 42), "--periodic and --hexagons go with --plane LX,LY"),
-        (("--plane", LENGTHS, "--hexagons", "10,10", "--cells", 42), "only --periodic and --hexagons go with --plane"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--cells", 42), "only --plane and --periodic go with --hexagons"),
         (("--plane", LENGTHS, "--hexagons", "10,10", "--coast", "world-ocean"), "--coast and --coast-width do not go"),
         (("--plane", LENGTHS, "--hexagons", "10,1.5"), "give two whole numbers with a comma between them"),
         (("--plane", "1e6", "--hexagons", "10,10"), "give two numbers with a comma between them"),
@@ -106,7 +106,7 @@ def test_what_is_of_the_sphere_alone_is_refused_in_a_sentence(
         code, _, err = trisk(*words)
         assert code == 2, (words, err)
         assert "on a plane" in err, (words, err)
-        assert err.strip().count("\n") == 0, (words, err)
+        assert err.strip().count("\n") == (words[0] == "bench"), (words, err)  # which tells first what it times
 
 
 def test_planes_are_partitioned_without_a_map(trisk: Call, plane_file: Path, tmp_path: Path) -> None:

@@ -54,7 +54,9 @@ def mesh(
     density: Annotated[
         str,
         typer.Option(
-            "--density", help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc."
+            "--density",
+            help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc; "
+            "on a plane the first two.",
         ),
     ] = DEFAULTS.density,
     density_variable: Annotated[
@@ -104,7 +106,7 @@ def mesh(
             "--start",
             help="icosahedral, fibonacci, random or random-root; by default the first, or the "
             "second where the first has no such mesh, and under a density from coarse meshes; with a coast the second, "
-            "or under a density points dealt out as it asks.",
+            "or under a density points dealt out as it asks; on a plane rows, random or random-root.",
         ),
     ] = DEFAULTS.start,
     seed: Annotated[int, typer.Option("--seed", help="Random seed.", min=0)] = DEFAULTS.seed,
@@ -139,15 +141,17 @@ def mesh(
     file_format: FileFormat = "netcdf4",
     quiet: Quiet = False,
 ) -> None:
-    """Generate a centroidal Voronoi mesh of the sphere, or regular hexagons of a plane."""
-    from mesh import MeshError, read_mesh, write_mesh
+    """Generate a centroidal Voronoi mesh of the sphere or of a plane, or regular hexagons of a plane."""
+    from mesh import MeshError, mesh_on_plane, read_mesh, write_mesh
     from mesh.files.io import least_sizes, require_format
-    from mesh.generation.pipeline import generate_mesh, is_on_plane
+    from mesh.generation.pipeline import generate_mesh
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
+    from mesh.plane.generation import is_on_plane
     from postprocess.runs.folders import require_possible_file
     from trisk.arguments.outputs import command_line
     from trisk.arguments.pairs import counts_of, pair_of
+    from trisk.report.bars import convergence_bar
     from trisk.report.summaries import print_quality, tell_of_centring
 
     request = MeshRequest(
@@ -174,7 +178,8 @@ def mesh(
     if is_on_plane(request):
         if resume or nested is not None or coast is not None or coast_width is not None:
             raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
-        on_plane = generate_mesh(request).mesh
+        with convergence_bar(limits.tolerance, not quiet and hexagons is None) as show:
+            on_plane = mesh_on_plane(request, show)
         write_mesh(on_plane, output, command_line(), file_format)
         if not quiet:
             print_quality(on_plane, str(output))

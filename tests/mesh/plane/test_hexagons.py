@@ -116,4 +116,4 @@ def test_planes_and_spheres_are_not_scaled_to_each_other(small_mesh: VoronoiMesh
         mesh.scaled(1.0)
     with pytest.raises(MeshError, match="the mesh is on a sphere, but one on a plane is asked for"):
         small_mesh.scaled(0.0)
-    assert "on a plane that repeats itself after 15000 m in x and 17320.5 m in y" in repr(mesh)
+    assert "a plane that repeats itself after 15 km in x and 17.3" in repr(mesh)
