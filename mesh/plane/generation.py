@@ -1,7 +1,6 @@
 """From the description of a mesh to the mesh of a plane."""
 
 import time
-from dataclasses import replace
 
 from mesh.arrays import Array
 from mesh.density.named import Density, uniform
@@ -27,16 +26,10 @@ def mesh_on_plane(request: MeshRequest, callback: Callback | None = None) -> Vor
     Besides the plane count cells, density, start (`mesh.plane.starts`), method (`lbfgs` or `lloyd`), tolerance,
     iterations, seconds and seed; with hexagons, nothing else. Raises `MeshError` if no such mesh can be made.
     """
-    if request.plane is None:
-        raise MeshError("a mesh on a plane needs its lengths; give --plane LX,LY")
-    if request.hexagons is not None:
-        _require_hexagons_alone(request)
-        return hexagon_mesh(request.plane, request.hexagons, request.periodic)
     begin = time.perf_counter()
-    _require_possible(request)
-    if request.cells is None:
-        raise MeshError("a mesh on a plane needs cells; give --cells N, or --hexagons NX,NY")
-    plane = rectangle(request.plane, request.periodic)
+    plane = require_possible_on_plane(request)
+    if request.hexagons is not None:
+        return hexagon_mesh((plane.width, plane.height), request.hexagons, request.periodic)
     density = density_on_plane(request.density, plane.lengths)
     limits = limits_of(request)
     points = starting_points(plane, cells_of(request), density, request.start, request.seed)
@@ -83,14 +76,18 @@ def converge_on_plane(
     return optimizer.run(limits, callback)
 
 
-def _require_hexagons_alone(request: MeshRequest) -> None:
-    if replace(request, plane=None, periodic=MeshRequest.periodic, hexagons=None) != MeshRequest():
+def require_possible_on_plane(request: MeshRequest) -> Rectangle:
+    """The plane that is asked for; raise `MeshError` if the request asks for what a mesh on it cannot have."""
+    if request.plane is None:
+        raise MeshError("a mesh on a plane needs its lengths; give --plane LX,LY")
+    plane = rectangle(request.plane, request.periodic)
+    alone = MeshRequest(plane=request.plane, periodic=request.periodic, hexagons=request.hexagons)
+    if request.hexagons is not None and request != alone:
         raise MeshError("only --plane and --periodic go with --hexagons; leave all else out that tells of the mesh")
-
-
-def _require_possible(request: MeshRequest) -> None:
-    """Raise `MeshError` if the request asks for what a mesh on a plane cannot have."""
+    if request.hexagons is None and request.cells is None:
+        raise MeshError("a mesh on a plane needs cells; give --cells N, or --hexagons NX,NY")
     if request.nested is not None or request.well_centered:
         raise MeshError("a mesh on a plane is neither nested nor made well-centred; leave these options out")
     if request.method not in METHODS:
         raise MeshError(f"a mesh on a plane cannot use the method {request.method}; choose {' or '.join(METHODS)}")
+    return plane

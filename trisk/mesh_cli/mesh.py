@@ -147,7 +147,7 @@ def mesh(
     from mesh.generation.pipeline import generate_mesh
     from mesh.generation.scvt import limits_of
     from mesh.mesh_request import MeshRequest
-    from mesh.plane.generation import is_on_plane
+    from mesh.plane.generation import is_on_plane, require_possible_on_plane
     from postprocess.runs.folders import require_possible_file
     from trisk.arguments.outputs import command_line
     from trisk.arguments.pairs import counts_of, pair_of
@@ -178,6 +178,7 @@ def mesh(
     if is_on_plane(request):
         if resume or nested is not None or coast is not None or coast_width is not None:
             raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
+        require_possible_on_plane(request)
         with convergence_bar(limits.tolerance, not quiet and hexagons is None) as show:
             on_plane = mesh_on_plane(request, show)
         write_mesh(on_plane, output, command_line(), file_format)
