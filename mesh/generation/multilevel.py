@@ -164,10 +164,12 @@ def _interpolation_weights(points: Array, grid: Array, triangles: Index, located
 class Transfer:
     """Linear interpolation from a coarse grid (m points) to finer points (n), and its transpose.
 
-    Fine point i is the sum over k of `weights[i, k]` times coarse point `targets[i, k]`.
+    Fine point i is the sum over k of `weights[i, k]` times coarse point `targets[i, k]`. At coarse points on walls the
+    component across them is held at zero: `held` gives those points for each component.
     """
 
-    def __init__(self, targets: Index, weights: Single, n_coarse: int) -> None:
+    def __init__(self, targets: Index, weights: Single, n_coarse: int, held: Sequence[Index] = ()) -> None:
+        self._held = held
         self._targets = np.ascontiguousarray(targets, dtype=np.int32)
         self._weights = np.ascontiguousarray(weights, dtype=np.float32)
         self._transpose = _transpose(self._targets, self._weights, n_coarse)
@@ -179,6 +181,8 @@ class Transfer:
             _restrict_rows(fine, *self._transpose, self._coarse, 0, len(self._coarse))
         else:
             _restrict_parallel(fine, *self._transpose, self._coarse)
+        for component, points in enumerate(self._held):
+            self._coarse[points, component] = 0.0
         return self._coarse
 
     def prolong_add(self, coarse: Array, fine: Array, scale: float, result: Array) -> None:

@@ -10,8 +10,9 @@ from mesh.arrays import Array, Index
 from mesh.generation.multilevel import CELLS_PER_GRID_POINT, MultilevelPreconditioner, Transfer
 from mesh.plane.domain import Rectangle
 
-GAIN = 0.25
-"""Weight of the grids: found by trial, half of that of the triangles of `mesh.generation.multilevel`."""
+GAIN = 0.1
+"""Weight of the grids, found by trial: from random points to 1e-5, 2000 and 10000 cells of all three kinds of planes
+take 0.33 to 0.76 of the iterations without grids, where a weight of 0.25 takes 0.48 to 0.94 and one of 0.5 up to 1.3."""
 
 
 def plane_preconditioner(points: Array, plane: Rectangle) -> MultilevelPreconditioner:
@@ -51,4 +52,11 @@ def _transfer(places: Array, plane: Rectangle, counts: Index) -> Transfer:
     pairs = [(i, j) for j in range(2) for i in range(2)]
     targets = np.stack([nodes[1][j] * sizes[0] + nodes[0][i] for i, j in pairs], axis=1)
     weights = np.stack([shares[1][j] * shares[0][i] for i, j in pairs], axis=1)
-    return Transfer(targets, weights, int(np.prod(sizes)))
+    return Transfer(targets, weights, int(np.prod(sizes)), _on_walls(plane, sizes))
+
+
+def _on_walls(plane: Rectangle, sizes: Index) -> list[Index]:
+    """Nodes on walls in x, and on those in y: images across a wall move the other way, so those on it do not."""
+    place = np.divmod(np.arange(np.prod(sizes)), sizes[0])[::-1]
+    at_ends = [(at == 0) | (at == size - 1) for at, size in zip(place, sizes, strict=True)]
+    return [np.flatnonzero(ends & (not repeats)) for ends, repeats in zip(at_ends, plane.repeats, strict=True)]
