@@ -19,18 +19,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class MeshRequest:
-    """A mesh to be generated; `scvt_mesh` and `trisk mesh` take its fields by the same names.
+    """A mesh to be generated; `scvt_mesh`, but for those of planes, and `trisk mesh` take its fields by the same names.
+
+    `mesh_on_plane` and `region_mesh` take the request as it is.
 
     Attributes
     ----------
     cells
         Number of cells; a `nested` mesh may leave it to the density.
     density
-        A name, the name of a NetCDF file, or any callable (see `mesh.density.named`).
+        A name, the name of a NetCDF file, or any callable (see `mesh.density.named`, on planes `mesh.density.planar`).
     start
         Starting points (see `mesh.generation.generators.starting_points`); by default from the bisected
         icosahedron where that has this number of cells, else from the Fibonacci spiral; `lbfgs` under a density refines
-        a converged mesh of a quarter as many cells, and so on down.
+        a converged mesh of a quarter as many cells, and so on down. On a plane see `mesh.plane.starts`.
     method
         `lbfgs`, `lloyd`, `multilevel` (L-BFGS on icosahedral meshes from coarse to fine), `probabilistic` or
         `macqueen`.

@@ -40,7 +40,11 @@ def widths(tmp_path: Path) -> Path:
 
 def test_scvt_mesh_takes_all_that_a_request_has_with_the_same_defaults() -> None:
     parameters = inspect.signature(scvt_mesh).parameters
+    of_planes = {"plane", "periodic", "hexagons"}  # which `mesh_on_plane` makes
+    assert not of_planes & set(parameters)
     for field in fields(MeshRequest):
+        if field.name in of_planes:
+            continue
         assert parameters[field.name].default == field.default
     assert list(parameters)[:8] == [
         *("cells", "density", "start", "method", "tolerance", "max_iterations", "seed", "callback"),
