@@ -17,7 +17,6 @@ from swe.diagnostics.outputs import CELLS
 from swe.errors import InputError
 from swe.output.files import HISTORY_FILE
 
-
 SMALL = 0.01
 """Square kilometres: areas of smaller cells are told in square metres."""
 

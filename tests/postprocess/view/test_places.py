@@ -1,6 +1,7 @@
 """Where the points of pages are, and that polygons come together from them, at the seams of planes too."""
 
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -85,7 +86,7 @@ def test_polygons_have_their_areas_at_seams_too(plane: VoronoiMesh, place: str) 
     counts, rings = unpacked(packed["counts"], 1, 8)[0], unpacked(packed["rings"], 1, 24)[0]
     points, surface = np.column_stack([places_of(outlines), np.zeros(outlines["points"])]), surface_of(plane)
     areas, starts = [], np.concatenate([[0], np.cumsum(counts)])
-    for first, end in zip(starts, starts[1:], strict=False):
+    for first, end in pairwise(starts):
         corners = points[rings[first:end]]
         ways = surface.shortest(np.diff(corners, axis=0, append=corners[:1]))
         assert np.abs(ways.sum(axis=0)).max() < 1e-3  # it closes where it began
