@@ -40,9 +40,9 @@ export function ground(uniforms) {
 export function patches(fans, kinds, uniforms) {
   const index = new BufferAttribute(fans.index, 1);
   const part = new BufferAttribute(fans.part, 2);
-  return inEachView(kinds, 1, [PATCH_CORNERS, PATCH_PIXELS], uniforms, ({ attribute, size }) => {
+  return inEachView(kinds, 1, [PATCH_CORNERS, PATCH_PIXELS], uniforms, ({ attributes }) => {
     const made = new BufferGeometry();
-    made.setAttribute(attribute, new BufferAttribute(fans[attribute], size));
+    for (const [name, size] of Object.entries(attributes)) made.setAttribute(name, new BufferAttribute(fans[name], size));
     made.setAttribute("part", part);
     made.setIndex(index);
     return made;
@@ -57,7 +57,7 @@ export function lines(pairs, order, kinds, uniforms) {
     made.setIndex([0, 1, 2, 0, 2, 3]);
     ["start", "end"].forEach((name, which) => {
       const values = new Float32Array(size * pairs.length);
-      pairs.forEach((pair, i) => values.set(onLine(pair[which], pair[0]), size * i));
+      pairs.forEach((pair, i) => values.set(onLine(pair[which], pair), size * i));
       made.setAttribute(name, new InstancedBufferAttribute(values, size));
     });
     made.instanceCount = pairs.length;

@@ -45,7 +45,7 @@ export class Picker {
     const points = surface.images(place);
     for (const point of points) {
       const found = this.nearest(point).find((number) => surface.holds(this.rings, number, this.centre(number), point));
-      if (found !== undefined) return surface.draws(this.centre(found), point, place, camera) ? found : -1;
+      if (found !== undefined) return surface.draws(this.rings, found, this.centre(found), point, place, camera) ? found : -1;
     }
     // Between the polygons of a closed surface there is nothing but round-off.
     return this.closed ? (this.nearest(points[0])[0] ?? -1) : -1;

@@ -1,6 +1,6 @@
 // What is the plane's own: its points, its view from above, and the way from places {x, y} to polygons. Lengths are in
 // units of the longer side of the plane, from its lower left corner. Where the plane repeats itself, one period is shown
-// round the camera: each polygon at its image nearest to it, and those on the rim once more on the other side.
+// round the camera: each polygon at its image nearest to it, and those that the border cuts once more on the other side.
 
 import { Vector2 } from "three";
 import { Fans } from "./fans.js";
@@ -12,6 +12,8 @@ import { unpacked } from "./unpack.js";
 const METRES_OF_A_KILOMETRE = 1000;
 const IN_KILOMETRES = 10000; // metres: places on longer planes are told in kilometres
 const STEPS = 2000; // along the plane that places are told apart by
+
+const CUT = 0.999; // of a polygon's reach: one that the border only touches is not cut; the shader has the same
 
 export class Plane {
   constructor(mesh) {
@@ -27,19 +29,27 @@ export class Plane {
     this.views = { plane: this.view };
     const both = periods.map((period) => (period > 0 ? [0, 1] : [0]));
     const copies = both[0].flatMap((x) => both[1].map((y) => ({ copy: { value: new Vector2(x, y) } })));
-    this.kinds = { plane: { defines: { PLANE: 1 }, attribute: "place", size: 4, onLine: (place, of) => this.besides(place, of), copies } };
+    this.kinds = { plane: { defines: { PLANE: 1 }, attributes: { place: 4, rim: 2 }, size: 4, onLine: (place, pair) => this.onLine(place, pair), copies } };
     this.uniforms = {
       centre: { value: new Vector2() },
       periods: { value: new Vector2(...this.periods) },
-      reach: { value: 0 },
     };
   }
 
+  /** A side of the plane with the polygons that its border cuts. */
+  across(axis) {
+    return this.extent[axis] + (this.periods[axis] > 0 ? 2 * this.reach : 0);
+  }
+
   get view() {
-    const rim = this.periods.map((period) => (period > 0 ? 2 * this.mesh.spacing : 0));
+    const plane = this;
     return {
-      width: this.extent[0] + rim[0],
-      height: this.extent[1] + rim[1],
+      get width() {
+        return plane.across(0);
+      },
+      get height() {
+        return plane.across(1);
+      },
       /** From the camera to the middle of the picture, no further than where the plane fills it. */
       middle: (camera, high, wide) => [this.kept(0, camera.x, wide) - camera.x, this.kept(1, camera.y, high) - camera.y],
       /** The place seen `x` to the right of the camera and `y` above it, or null beyond the rim. */
@@ -108,7 +118,6 @@ export class Plane {
 
   aim(camera) {
     this.uniforms.centre.value.set(camera.x, camera.y);
-    this.uniforms.reach.value = this.reach;
   }
 
   /** Corners of a ring one after another [x, y], each at its image nearest to the one before. */
@@ -122,31 +131,40 @@ export class Plane {
     return found;
   }
 
+  middleOf(corners) {
+    return [0, 1].map((axis) => corners.reduce((sum, corner) => sum + corner[axis], 0) / corners.length);
+  }
+
+  /** How far a polygon reaches along x and y from a point within. */
+  reachOf(corners, [x, y]) {
+    return [Math.max(...corners.map((corner) => Math.abs(corner[0] - x))), Math.max(...corners.map((corner) => Math.abs(corner[1] - y)))];
+  }
+
   /**
    * Corners of the fans of all polygons: `place` (4 each) the corner and the middle of its polygon, which lies where the
-   * plane begins; `part` and `index` as in `Fans`. `centres` (3 for each polygon) are these middles, `reach` is the
-   * largest distance along x or y from them.
+   * plane begins; `rim` (2 each) how far that reaches from there; `part` and `index` as in `Fans`. `centres` (3 for each
+   * polygon) are the middles.
    */
   fans({ starts, rings, count }) {
-    const fans = new Fans(starts[count] + count, { place: 4 });
+    const fans = new Fans(starts[count] + count, this.kinds.plane.attributes);
     const centres = new Float64Array(3 * count);
-    let reach = 0;
     for (let number = 0; number < count; number++) {
       const ring = this.outline(rings, starts[number], starts[number + 1]);
-      const middle = [0, 1].map((axis) => ring.reduce((sum, corner) => sum + corner[axis], 0) / ring.length);
+      const middle = this.middleOf(ring);
       const home = middle.map((value, axis) => this.wrapped(axis, value));
+      const rim = this.reachOf(ring, middle);
+      this.reach = Math.max(this.reach, ...rim);
       centres.set(home, 3 * number);
-      const add = (corner, within) => fans.of.place.set([...corner, ...home], 4 * fans.corner(number, within));
-      const hub = fans.corners;
-      add(home, 1);
-      for (const corner of ring) {
-        const way = corner.map((value, axis) => value - middle[axis]);
-        reach = Math.max(reach, Math.abs(way[0]), Math.abs(way[1]));
-        add([home[0] + way[0], home[1] + way[1]], 0);
-      }
+      const add = (x, y, within) => {
+        const at = fans.corner(number, within);
+        fans.of.place.set([x, y, ...home], 4 * at);
+        fans.of.rim.set(rim, 2 * at);
+        return at;
+      };
+      const hub = add(...home, 1);
+      for (const [x, y] of ring) add(home[0] + x - middle[0], home[1] + y - middle[1], 0);
       fans.round(hub, ring.length);
     }
-    this.reach = Math.max(this.reach, reach);
     return { ...fans.filled, centres };
   }
 
@@ -162,18 +180,18 @@ export class Plane {
 
   /** Whether the sides of a polygon go round a point. */
   holds({ starts, rings }, number, centre, point) {
-    const { x, y } = this.points;
-    return goesRound(starts[number], starts[number + 1], (k) => [
-      centre[0] - point[0] + this.shortest(0, x[rings[k]] - centre[0]),
-      centre[1] - point[1] + this.shortest(1, y[rings[k]] - centre[1]),
-    ]);
+    const corners = this.outline(rings, starts[number], starts[number + 1]);
+    const back = [0, 1].map((axis) => point[axis] - centre[axis] + this.middleOf(corners)[axis]);
+    return goesRound(0, corners.length, (k) => [corners[k][0] - back[0], corners[k][1] - back[1]]);
   }
 
   /** Whether a polygon with this middle, which holds the image `point` of a place, is drawn there. */
-  draws(centre, point, place, camera) {
+  draws({ starts, rings }, number, centre, point, place, camera) {
+    const corners = this.outline(rings, starts[number], starts[number + 1]);
+    const rim = this.reachOf(corners, this.middleOf(corners));
     return ["x", "y"].every((name, axis) => {
       const from = centre[axis] - point[axis] + place[name] - camera[name];
-      return !(this.periods[axis] > 0) || Math.abs(from) <= this.periods[axis] / 2 + this.reach;
+      return !(this.periods[axis] > 0) || Math.abs(from) <= this.periods[axis] / 2 + CUT * rim[axis];
     });
   }
 
@@ -202,9 +220,10 @@ export class Plane {
     return pairs;
   }
 
-  /** A place on a line that begins at the place `of`: its nearest image, and where the line begins. */
-  besides(place, of) {
-    return [of.x + this.shortest(0, place.x - of.x), of.y + this.shortest(1, place.y - of.y), of.x, of.y];
+  /** An end of a line between a pair of places and the middle of that line, at images next to each other. */
+  onLine({ x, y }, [first, last]) {
+    const middle = [first.x + this.shortest(0, last.x - first.x) / 2, first.y + this.shortest(1, last.y - first.y) / 2];
+    return [middle[0] + this.shortest(0, x - middle[0]), middle[1] + this.shortest(1, y - middle[1]), ...middle];
   }
 
   graticule() {

@@ -2,7 +2,7 @@
 // far above the camera's place.
 
 // `scale` and `shift` bring lengths to the picture, -1 to 1; `copy` draws once more, on the other side, what the rim of
-// the map cuts, or that of one period of the plane.
+// the map cuts, or the border of one period of the plane: `rim` is how far each polygon reaches from its middle.
 const PLACING = /* glsl */ `
 precision highp float;
 uniform vec2 scale;
@@ -24,10 +24,9 @@ vec3 placed(vec4 where) {
 #elif defined(PLANE)
 uniform vec2 centre;
 uniform vec2 periods;
-uniform float reach;
 uniform vec2 copy;
 
-vec3 placed(vec4 where) {
+vec3 placed(vec4 where, vec2 rim) {
   vec2 turn = vec2(0.0);
   bool far = false;
   for (int axis = 0; axis < 2; axis++) {
@@ -37,7 +36,7 @@ vec3 placed(vec4 where) {
     from -= turn[axis];
     if (copy[axis] < 0.5) continue;
     turn[axis] += from > 0.0 ? periods[axis] : -periods[axis];
-    far = far || abs(from) < 0.5 * periods[axis] - reach;
+    far = far || abs(from) < 0.5 * periods[axis] - 0.999 * rim[axis];
   }
   return vec3(where.xy - centre - turn, far ? -1.0 : 1.0);
 }
@@ -56,6 +55,7 @@ export const PATCH_CORNERS = /* glsl */ `${PLACING}
 in vec4 onMap;
 #elif defined(PLANE)
 in vec4 place;
+in vec2 rim;
 #else
 in vec3 position;
 #endif
@@ -74,7 +74,7 @@ void main() {
   plane = at.xy;
   bool hidden = at.z < 0.0;
 #elif defined(PLANE)
-  vec3 at = placed(place);
+  vec3 at = placed(place, rim);
   bool hidden = at.z < 0.0;
 #else
   vec3 at = placed(position);
@@ -132,8 +132,14 @@ uniform vec2 pixels;
 uniform float width;
 
 void main() {
+#ifdef PLANE
+  vec2 rim = max(abs(start.xy - start.zw), abs(end.xy - end.zw));
+  vec3 a = placed(start, rim);
+  vec3 b = placed(end, rim);
+#else
   vec3 a = placed(start);
   vec3 b = placed(end);
+#endif
   vec2 first = a.xy * scale + shift;
   vec2 last = b.xy * scale + shift;
   vec2 along = (last - first) * pixels;

@@ -10,17 +10,20 @@ import { unpacked } from "./unpack.js";
 const START = { lon: -Math.PI / 2, lat: Math.PI / 9, zoom: 1 };
 const PIECE_OF_COAST = 0.06;
 
-/** Places on the map: longitude, cosine and sine of Mollweide's angle, longitude of what they belong to. */
-function onMap({ lon, lat }, of) {
+/** Places on the map: longitude, cosine and sine of Mollweide's angle, longitude of where their line begins. */
+function onMap({ lon, lat }, [of]) {
   const angle = mollweideAngle(lat);
   return [of.lon + aboutZero(lon - of.lon), Math.cos(angle), Math.sin(angle), of.lon];
 }
 
-/** How each view is drawn: the attribute of fans that it reads, places on lines, and the images drawn of everything. */
+/**
+ * How each view is drawn: the attributes of fans that it reads, the ends of lines between pairs of places and their
+ * `size`, and the images that are drawn of everything.
+ */
 const KINDS = {
-  globe: { defines: {}, attribute: "position", size: 3, onLine: ({ lon, lat }) => pointOf(lon, lat), copies: [{}] },
+  globe: { defines: {}, attributes: { position: 3 }, size: 3, onLine: ({ lon, lat }) => pointOf(lon, lat), copies: [{}] },
   // Once more what the rim of the map cuts.
-  map: { defines: { MAP: 1 }, attribute: "onMap", size: 4, onLine: onMap, copies: [{ copy: { value: 0 } }, { copy: { value: 1 } }] },
+  map: { defines: { MAP: 1 }, attributes: { onMap: 4 }, size: 4, onLine: onMap, copies: [{ copy: { value: 0 } }, { copy: { value: 1 } }] },
 };
 
 export class Sphere {
@@ -91,7 +94,7 @@ export class Sphere {
   }
 
   fans(rings) {
-    return { ...sphereFans(this.points, rings), reach: 0 };
+    return sphereFans(this.points, rings);
   }
 
   /** Points for `holds` that may be in the polygon which is seen at a place. */
