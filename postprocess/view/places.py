@@ -10,7 +10,7 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.geometry.angles import TURN, eastward
 from mesh.geometry.surface import surface_of
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.voronoi_mesh import Place, VoronoiMesh
 from postprocess.view.packing import packed_list
 
 ANGLE_BITS = 24
@@ -26,7 +26,7 @@ def packed_places(mesh: VoronoiMesh, with_edges: bool) -> dict[str, Any]:
     The spacing is the shortest distance between neighbouring cells, in radii of the sphere or in lengths of the longer
     side of the plane.
     """
-    names = ("vertex", "cell", "edge") if with_edges else ("vertex", "cell")
+    names: tuple[Place, ...] = ("vertex", "cell", "edge") if with_edges else ("vertex", "cell")
     first, second = (np.concatenate(each) for each in zip(*(mesh.coordinates(name) for name in names), strict=True))
     packed = _on_the_sphere(first, second) if mesh.on_a_sphere else _on_the_plane(mesh, first, second)
     unit = mesh.sphere_radius if mesh.on_a_sphere else max(packed["plane"]["extent"])

@@ -25,7 +25,7 @@ def test_errors_are_one_sentence(trisk: Call, mountain_run: Path, tmp_path: Path
     for arguments, words in (
         ((tmp_path, "-o", tmp_path / "a.html"), "no readable run"),
         ((mountain_run, "-o", tmp_path / "a" / "b.html"), "there is no folder"),
-        ((mountain_run / "history.nc", "-o", tmp_path / "a.html"), "history.nc"),
+        ((mountain_run / "run.json", "-o", tmp_path / "a.html"), "run.json"),
         ((mountain_run, "-o", tmp_path / "a.html", "--fields", "heat"), "choose among thickness"),
     ):
         code, out, err = trisk("view", *arguments)
