@@ -20,11 +20,11 @@ function drawn(geometry, order, vertexShader, fragmentShader, uniforms, defines 
   return mesh;
 }
 
-/** For each view by name, what is drawn in it: `geometry` makes it, `kinds` tell how often and by which programs. */
-function inEachView(kinds, order, programs, uniforms, geometry) {
+/** For each view by name, all images that are drawn in it; `geometryOf` a kind of view makes that of each image. */
+function inEachView(kinds, order, programs, uniforms, geometryOf) {
   const views = Object.entries(kinds).map(([name, kind]) => {
-    const made = geometry(kind);
-    return [name, kind.copies.map((own) => drawn(made, order, ...programs, { ...uniforms, ...own }, kind.defines))];
+    const geometry = geometryOf(kind);
+    return [name, kind.copies.map((own) => drawn(geometry(), order, ...programs, { ...uniforms, ...own }, kind.defines))];
   });
   return Object.fromEntries(views);
 }
@@ -41,11 +41,12 @@ export function patches(fans, kinds, uniforms) {
   const index = new BufferAttribute(fans.index, 1);
   const part = new BufferAttribute(fans.part, 2);
   return inEachView(kinds, 1, [PATCH_CORNERS, PATCH_PIXELS], uniforms, ({ attributes }) => {
-    const made = new BufferGeometry();
-    for (const [name, size] of Object.entries(attributes)) made.setAttribute(name, new BufferAttribute(fans[name], size));
-    made.setAttribute("part", part);
-    made.setIndex(index);
-    return made;
+    const made = Object.entries(attributes).map(([name, size]) => [name, new BufferAttribute(fans[name], size)]);
+    return () => {
+      const geometry = new BufferGeometry();
+      for (const [name, attribute] of [...made, ["part", part]]) geometry.setAttribute(name, attribute);
+      return geometry.setIndex(index);
+    };
   });
 }
 
@@ -61,6 +62,6 @@ export function lines(pairs, order, kinds, uniforms) {
       made.setAttribute(name, new InstancedBufferAttribute(values, size));
     });
     made.instanceCount = pairs.length;
-    return made;
+    return () => made;
   });
 }

@@ -2,7 +2,7 @@
 // units of the longer side of the plane, from its lower left corner. Where the plane repeats itself, one period is shown
 // round the camera: each polygon at its image nearest to it, and those that the border cuts once more on the other side.
 
-import { Vector2 } from "three";
+import { BufferAttribute, Vector2 } from "three";
 import { Fans } from "./fans.js";
 import { inDigits } from "./numbers.js";
 import { goesRound } from "./picking.js";
@@ -13,7 +13,7 @@ const METRES_OF_A_KILOMETRE = 1000;
 const IN_KILOMETRES = 10000; // metres: places on longer planes are told in kilometres
 const STEPS = 2000; // along the plane that places are told apart by
 
-const CUT = 0.999; // of a polygon's reach: one that the border only touches is not cut; the shader has the same
+const CUT = 0.999; // of a polygon's reach: one that the border only touches is not cut; shaders have the same for lines
 
 export class Plane {
   constructor(mesh) {
@@ -29,7 +29,7 @@ export class Plane {
     this.views = { plane: this.view };
     const both = periods.map((period) => (period > 0 ? [0, 1] : [0]));
     const copies = both[0].flatMap((x) => both[1].map((y) => ({ copy: { value: new Vector2(x, y) } })));
-    this.kinds = { plane: { defines: { PLANE: 1 }, attributes: { place: 4, rim: 2 }, size: 4, onLine: (place, pair) => this.onLine(place, pair), copies } };
+    this.kinds = { plane: { defines: { PLANE: 1 }, attributes: { place: 4 }, size: 4, onLine: (place, pair) => this.onLine(place, pair), copies } };
     this.uniforms = {
       centre: { value: new Vector2() },
       periods: { value: new Vector2(...this.periods) },
@@ -116,8 +116,29 @@ export class Plane {
     Object.assign(camera, { x: within(0, x), y: within(1, y) });
   }
 
-  aim(camera) {
+  /** Tell shaders where the camera is, and copies of the polygons of a layer which of them to draw. */
+  aim(camera, layer) {
     this.uniforms.centre.value.set(camera.x, camera.y);
+    if (layer.seenFrom?.x === camera.x && layer.seenFrom?.y === camera.y) return;
+    layer.seenFrom = { x: camera.x, y: camera.y };
+    for (const mesh of layer.views.plane) {
+      const repeated = [0, 1].filter((axis) => mesh.material.uniforms.copy.value.getComponent(axis) > 0);
+      if (repeated.length) mesh.geometry.setIndex(new BufferAttribute(this.cut(layer.fans, camera, repeated), 1));
+    }
+  }
+
+  /** Corners of the triangles of all polygons that the border cuts along these axes. */
+  cut({ index, centres, rims, starts }, camera, axes) {
+    const at = [camera.x, camera.y];
+    const found = [];
+    for (let number = 0; number < starts.length - 1; number++) {
+      const isCut = axes.every((axis) => {
+        const from = Math.abs(this.shortest(axis, centres[3 * number + axis] - at[axis]));
+        return from > this.periods[axis] / 2 - CUT * rims[2 * number + axis];
+      });
+      if (isCut) for (let k = 3 * starts[number]; k < 3 * starts[number + 1]; k++) found.push(index[k]);
+    }
+    return Uint32Array.from(found);
   }
 
   /** Corners of a ring one after another [x, y], each at its image nearest to the one before. */
@@ -142,12 +163,12 @@ export class Plane {
 
   /**
    * Corners of the fans of all polygons: `place` (4 each) the corner and the middle of its polygon, which lies where the
-   * plane begins; `rim` (2 each) how far that reaches from there; `part` and `index` as in `Fans`. `centres` (3 for each
-   * polygon) are the middles.
+   * plane begins; `part` and `index` as in `Fans`. `centres` (3 for each polygon) are the middles, `rims` (2 each) how
+   * far polygons reach from there, and `starts` the numbers of their first triangles.
    */
   fans({ starts, rings, count }) {
     const fans = new Fans(starts[count] + count, this.kinds.plane.attributes);
-    const centres = new Float64Array(3 * count);
+    const [centres, rims] = [new Float64Array(3 * count), new Float64Array(2 * count)];
     for (let number = 0; number < count; number++) {
       const ring = this.outline(rings, starts[number], starts[number + 1]);
       const middle = this.middleOf(ring);
@@ -155,17 +176,17 @@ export class Plane {
       const rim = this.reachOf(ring, middle);
       this.reach = Math.max(this.reach, ...rim);
       centres.set(home, 3 * number);
+      rims.set(rim, 2 * number);
       const add = (x, y, within) => {
         const at = fans.corner(number, within);
         fans.of.place.set([x, y, ...home], 4 * at);
-        fans.of.rim.set(rim, 2 * at);
         return at;
       };
       const hub = add(...home, 1);
       for (const [x, y] of ring) add(home[0] + x - middle[0], home[1] + y - middle[1], 0);
       fans.round(hub, ring.length);
     }
-    return { ...fans.filled, centres };
+    return { ...fans.filled, centres, rims, starts };
   }
 
   /** Points for `holds` that may be in the polygon which is seen at a place: its images near where the plane begins. */

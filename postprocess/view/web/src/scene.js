@@ -65,7 +65,7 @@ export class Picture {
   }
 
   addPatches(fans) {
-    return this.add({ views: patches(fans, this.surface.kinds, this.uniforms), ofPlace: true });
+    return this.add({ views: patches(fans, this.surface.kinds, this.uniforms), fans, ofPlace: true });
   }
 
   /** A texture of the colours (three bytes each) of a palette. */
@@ -121,7 +121,7 @@ export class Picture {
     uniforms.shift.value.set(-middle[0] * uniforms.scale.value.x, -middle[1] * uniforms.scale.value.y);
     const { width: across, height: high } = this.surface.views[state.projection];
     uniforms.half_.value.set(across / 2, high / 2);
-    this.surface.aim(state.camera);
+    this.surface.aim(state.camera, shownLayer);
     uniforms.pixels.value.set((width * density) / 2, (height * density) / 2);
     uniforms.density.value = density;
     uniforms.pointed.value = state.pointed;

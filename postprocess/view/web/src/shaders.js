@@ -2,7 +2,7 @@
 // far above the camera's place.
 
 // `scale` and `shift` bring lengths to the picture, -1 to 1; `copy` draws once more, on the other side, what the rim of
-// the map cuts, or the border of one period of the plane: `rim` is how far each polygon reaches from its middle.
+// the map cuts, or the border of one period of the plane.
 const PLACING = /* glsl */ `
 precision highp float;
 uniform vec2 scale;
@@ -26,19 +26,16 @@ uniform vec2 centre;
 uniform vec2 periods;
 uniform vec2 copy;
 
-vec3 placed(vec4 where, vec2 rim) {
+vec3 placed(vec4 where) {
   vec2 turn = vec2(0.0);
-  bool far = false;
   for (int axis = 0; axis < 2; axis++) {
     if (periods[axis] == 0.0) continue;
     float from = where[axis + 2] - centre[axis];
-    turn[axis] = periods[axis] * floor(from / periods[axis] + 0.5);
-    from -= turn[axis];
-    if (copy[axis] < 0.5) continue;
-    turn[axis] += from > 0.0 ? periods[axis] : -periods[axis];
-    far = far || abs(from) < 0.5 * periods[axis] - 0.999 * rim[axis];
+    float nearest = periods[axis] * floor(from / periods[axis] + 0.5);
+    float other = from > nearest ? periods[axis] : -periods[axis];
+    turn[axis] = copy[axis] > 0.5 ? nearest + other : nearest;
   }
-  return vec3(where.xy - centre - turn, far ? -1.0 : 1.0);
+  return vec3(where.xy - centre - turn, 1.0);
 }
 #else
 uniform mat3 view;
@@ -55,7 +52,6 @@ export const PATCH_CORNERS = /* glsl */ `${PLACING}
 in vec4 onMap;
 #elif defined(PLANE)
 in vec4 place;
-in vec2 rim;
 #else
 in vec3 position;
 #endif
@@ -74,8 +70,8 @@ void main() {
   plane = at.xy;
   bool hidden = at.z < 0.0;
 #elif defined(PLANE)
-  vec3 at = placed(place, rim);
-  bool hidden = at.z < 0.0;
+  vec3 at = placed(place);
+  bool hidden = false;
 #else
   vec3 at = placed(position);
   bool hidden = false;
@@ -132,14 +128,8 @@ uniform vec2 pixels;
 uniform float width;
 
 void main() {
-#ifdef PLANE
-  vec2 rim = max(abs(start.xy - start.zw), abs(end.xy - end.zw));
-  vec3 a = placed(start, rim);
-  vec3 b = placed(end, rim);
-#else
   vec3 a = placed(start);
   vec3 b = placed(end);
-#endif
   vec2 first = a.xy * scale + shift;
   vec2 last = b.xy * scale + shift;
   vec2 along = (last - first) * pixels;
@@ -148,7 +138,13 @@ void main() {
 #ifdef MAP
   plane = mix(a.xy, b.xy, corner.x);
 #endif
+#ifdef PLANE
+  // Copies of polygons hold those that the border cuts; of lines, the others are left out here.
+  vec2 beyond = 0.5 * abs(a.xy + b.xy) - 0.5 * periods;
+  bool hidden = any(greaterThan(copy * beyond, 0.4995 * abs(a.xy - b.xy)));
+#else
   bool hidden = min(a.z, b.z) < 0.0;
+#endif
   gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(mix(first, last, corner.x) + sideways * width / pixels, 0.0, 1.0);
 }
 `;
