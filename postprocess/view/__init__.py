@@ -1,4 +1,4 @@
-"""Runs as pages for a browser: the globe, a map, the values of every cell."""
+"""Runs and meshes as pages for a browser: the globe, a map, planes, the values of every cell."""
 
 from postprocess.view.html_page import page_of, require_page, view_page, write_page
 

@@ -17,6 +17,12 @@ from swe.diagnostics.outputs import CELLS
 from swe.errors import InputError
 from swe.output.files import HISTORY_FILE
 
+ROUNDING = 1e-9
+"""Measures that differ by less, relative to the largest, are those of regular cells, and the same."""
+
+SMALL = 0.01
+"""Square kilometres: areas of smaller cells are told in square metres."""
+
 
 @dataclass(frozen=True, eq=False)
 class PageField:
@@ -64,12 +70,28 @@ def history_fields(run: Run, names: Sequence[str]) -> Iterator[PageField]:
 
 def mesh_measures(mesh: VoronoiMesh) -> Iterator[PageField]:
     """Area, regularity and distance from the centroid of each cell; the last one where the density is known."""
-    area = mesh.area_cell / SQUARE_METRES_PER_SQUARE_KILOMETRE
-    yield PageField("cell area", "area of the cell", "km²", CELLS, area[None, :])
-    sigma = neighbour_distance_ratio(mesh)
+    area, unit = _areas(mesh)
+    yield PageField("cell area", "area of the cell", unit, CELLS, _without_rounding(area)[None, :])
+    sigma = _without_rounding(neighbour_distance_ratio(mesh))
     yield PageField("sigma", "shortest over longest distance to a neighbour", "", CELLS, sigma[None, :])
     density, _ = density_of(mesh)
     if density is not None:
         offsets = centroid_offsets(mesh, density)
         meaning = "distance from the generator to the centroid of its cell, in mean spacings"
         yield PageField("distance to centroid", meaning, "", CELLS, offsets[None, :])
+
+
+def _areas(mesh: VoronoiMesh) -> tuple[Array, str]:
+    """Areas of cells (n_cells,), and their unit."""
+    if mesh.sphere_radius == 1.0:
+        return mesh.area_cell, "sr"
+    if mesh.area_cell.max() < SMALL * SQUARE_METRES_PER_SQUARE_KILOMETRE:
+        return mesh.area_cell, "m²"
+    return mesh.area_cell / SQUARE_METRES_PER_SQUARE_KILOMETRE, "km²"
+
+
+def _without_rounding(values: Array) -> Array:
+    """Values (n,), all at their mean where only round-off tells them apart: colours would show nothing else."""
+    if np.ptp(values) < ROUNDING * np.abs(values).max():
+        return np.full_like(values, values.mean())
+    return values

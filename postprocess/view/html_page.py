@@ -12,8 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
+from mesh.geometry.surface import surface_of
 from mesh.safe_files import AnyPath, written_aside
-from mesh.voronoi_mesh import VoronoiMesh
+from mesh.voronoi_mesh import VoronoiMesh, mesh_in_words
 from postprocess.runs.folders import require_possible_folder
 from postprocess.runs.reading import Run, days_in_words, days_of_both
 from postprocess.view.fields import PageField, history_fields, history_names, mesh_measures
@@ -31,17 +32,18 @@ BITS_OF_THE_MESH = 16
 PAGE_SUFFIXES = (".html", ".htm")
 
 SAME_PLACE = 1e-6
-"""Generators closer together than this, in radii of the sphere, are the same."""
+"""Generators closer together than this, in radii of the sphere or extents of the plane, are the same."""
 
 
-def view_page(run: Run, output: AnyPath, other: Run | None = None, fields: Sequence[str] = ()) -> Path:
+def view_page(shown: Run | VoronoiMesh, output: AnyPath, other: Run | None = None, fields: Sequence[str] = ()) -> Path:
     """Write the page of a run, or of two side by side with their difference, to the file `output`; return its path.
 
-    `fields` are those of the history that it shows: by default all but those at edges. Raises `InputError` where there
-    is no such field, where the two runs have different meshes or no day in common, and as `require_page` does.
+    `fields` are those of the history that it shows: by default all but those at edges. A mesh has a page of its own,
+    with its measures. Raises `InputError` where there is no such field, where the two runs have different meshes or no
+    day in common, where a mesh is to be shown beside a run or with fields of one, and as `require_page` does.
     """
     require_page(output)
-    return write_page(page_of(run, other, fields), output)
+    return write_page(page_of(shown, other, fields), output)
 
 
 def require_page(output: AnyPath) -> None:
@@ -68,12 +70,20 @@ def write_page(page: str, output: AnyPath) -> Path:
     return output
 
 
-def page_of(run: Run, other: Run | None = None, fields: Sequence[str] = ()) -> str:
+def page_of(shown: Run | VoronoiMesh, other: Run | None = None, fields: Sequence[str] = ()) -> str:
     """The HTML of the page that `view_page` writes."""
-    runs = [run] if other is None else [run, other]
+    if isinstance(shown, VoronoiMesh):
+        if other is not None or fields:
+            raise InputError("a mesh alone has no run beside it and no fields of one; show a run, or the mesh alone")
+        return _filled(_content_of_mesh(shown))
+    runs = [shown] if other is None else [shown, other]
     if other is not None:
-        _require_same_mesh(run, other)
-    content = _content(runs, _names(runs, fields))
+        _require_same_mesh(shown, other)
+    return _filled(_content(runs, _names(runs, fields)))
+
+
+def _filled(content: dict[str, Any]) -> str:
+    """The frame of the page with everything in it."""
     parts = files("postprocess.view") / "page"
     frame = (parts / "page.html").read_text(encoding="utf-8")
     # "<" never stands in the data, lest it end the script that holds them.
@@ -95,11 +105,24 @@ def _content(runs: Sequence[Run], names: Sequence[str]) -> dict[str, Any]:
     bits = _bits(run, names, len(rows[0]) * (1 if len(runs) == 1 else 3))
     packed = [_packed_field(fields, rows, bits) for fields in _paired(runs, names)]
     if len(runs) == 1:
-        packed += [_packed_field((field,), rows, BITS_OF_THE_MESH) for field in mesh_measures(mesh)]
+        packed += _packed_measures(mesh)
     return {
         "title": f"{' and '.join(each.case for each in runs[: 1 + (runs[-1].case != run.case)])}, {run.cells} cells",
         "panes": [] if len(runs) == 1 else [*(str(each.directory) for each in runs), "difference: first minus second"],
         "days": [float(run.days[row]) for row in rows[0]],
+        "mesh": packed_outlines(mesh, {field["place"] for field in packed}),
+        "fields": packed,
+        "palettes": packed_palettes(),
+    }
+
+
+def _content_of_mesh(mesh: VoronoiMesh) -> dict[str, Any]:
+    """The same of a mesh alone, on no days."""
+    packed = _packed_measures(mesh)
+    return {
+        "title": mesh_in_words(mesh),
+        "panes": [],
+        "days": [],
         "mesh": packed_outlines(mesh, {field["place"] for field in packed}),
         "fields": packed,
         "palettes": packed_palettes(),
@@ -147,6 +170,12 @@ def _packed_field(fields: Sequence[PageField], rows: Sequence[NDArray[np.intp]],
     }
 
 
+def _packed_measures(mesh: VoronoiMesh) -> list[dict[str, Any]]:
+    """What is measured of a mesh, which stays the same."""
+    first_row = [np.zeros(1, dtype=np.intp)]
+    return [_packed_field((field,), first_row, BITS_OF_THE_MESH) for field in mesh_measures(mesh)]
+
+
 def _taken(values: Array, rows: NDArray[np.intp]) -> Array:
     return values[rows] if len(values) > 1 else values
 
@@ -189,5 +218,8 @@ def _require_same_mesh(run: Run, other: Run) -> None:
 def _same_cells(mesh: VoronoiMesh, other: VoronoiMesh) -> bool:
     if (mesh.n_cells, mesh.n_vertices) != (other.n_cells, other.n_vertices):
         return False
-    apart = mesh.cell_points / mesh.sphere_radius - other.cell_points / other.sphere_radius
-    return bool(np.abs(apart).max() < SAME_PLACE)
+    surface = surface_of(mesh)
+    if surface_of(other) != surface:
+        return False
+    points, others = mesh.cell_points / mesh.length_unit, other.cell_points / other.length_unit
+    return bool(np.abs(points - others).max() < SAME_PLACE * surface.extent(points))

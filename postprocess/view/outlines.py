@@ -1,4 +1,4 @@
-"""Geometry of a page: points on the sphere, and the rings of them that outline cells, triangles and edges.
+"""Geometry of a page: its points, and the rings of them that outline cells, triangles and edges.
 
 Points are numbered vertices first, then cells, then edges.
 """
@@ -8,48 +8,27 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from mesh.arrays import Array, Index
+from mesh.arrays import Index
 from mesh.discrete.walls import has_walls, wall_edges
-from mesh.geometry.angles import TURN, eastward
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.view.packing import packed_list
+from postprocess.view.places import packed_places
 from swe.diagnostics.outputs import CELLS, EDGES, VERTICES
-
-ANGLE_BITS = 24
-"""Of longitudes and latitudes: steps of two metres on the Earth."""
 
 NUMBER_BITS = 24
 """Of the numbers of points."""
 
 
 def packed_outlines(mesh: VoronoiMesh, places: set[str]) -> dict[str, Any]:
-    """Points, rings of each of the `places` that fields live at, and the coast, as the page reads them.
-
-    The `spacing` is the shortest distance between neighbouring cells, in radii of the sphere.
-    """
-    longitude, latitude = _angles(mesh, with_edges=has_walls(mesh) or EDGES in places)
-    top = 2**ANGLE_BITS - 1
+    """Points, rings of each of the `places` that fields live at, and the coast, as the page reads them."""
     return {
-        "angleBits": ANGLE_BITS,
+        **packed_places(mesh, with_edges=has_walls(mesh) or EDGES in places),
         "numberBits": NUMBER_BITS,
-        "points": len(longitude),
         "cellPoints": [mesh.n_vertices, mesh.n_cells],
-        "longitude": packed_list(np.rint(eastward(longitude) / TURN * top).astype(np.int64), ANGLE_BITS),
-        "latitude": packed_list(np.rint((latitude / np.pi + 0.5) * top).astype(np.int64), ANGLE_BITS),
-        "spacing": float(mesh.dc_edge.min() / mesh.sphere_radius),
         "closed": not has_walls(mesh),
         "coast": _packed_coast(mesh),
         "places": {place: _packed_rings(*rings_of(mesh, place)) for place in sorted(places)},
     }
-
-
-def _angles(mesh: VoronoiMesh, with_edges: bool) -> tuple[Array, Array]:
-    """Longitudes and latitudes of all points, rad; those of edges only where a ring may need them."""
-    longitudes, latitudes = [mesh.lon_vertex, mesh.lon_cell], [mesh.lat_vertex, mesh.lat_cell]
-    if with_edges:
-        longitudes.append(mesh.lon_edge)
-        latitudes.append(mesh.lat_edge)
-    return np.concatenate(longitudes), np.concatenate(latitudes)
 
 
 def rings_of(mesh: VoronoiMesh, place: str) -> tuple[NDArray[np.int64], Index]:

@@ -1,4 +1,4 @@
-"""`trisk view`: a run as a page for a browser."""
+"""`trisk view`: a run or a mesh as a page for a browser."""
 
 from pathlib import Path
 from typing import Annotated
@@ -9,7 +9,7 @@ from trisk.cli.options import Quiet
 
 
 def view(
-    run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
+    run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote, or the file of a mesh.")],
     output: Annotated[Path, typer.Option("--output", "-o", help="HTML file to write.")],
     other_directory: Annotated[
         Path | None, typer.Argument(help="Another run on the same mesh, shown beside it with their difference.")
@@ -24,16 +24,18 @@ def view(
     ] = None,
     quiet: Quiet = False,
 ) -> None:
-    """Make a page that shows a run, or two, in a browser.
+    """Make a page that shows a run, or two, or a mesh in a browser.
 
     The page needs no network: it holds the cells and all snapshots.
     """
+    from mesh import read_mesh
     from postprocess.runs.reading import read_run
     from postprocess.view import require_page, view_page
 
     require_page(output)
     other = None if other_directory is None else read_run(other_directory)
-    path = view_page(read_run(run_directory), output, other, _names(fields))
+    shown = read_mesh(run_directory) if run_directory.is_file() else read_run(run_directory)
+    path = view_page(shown, output, other, _names(fields))
     if not quiet:
         typer.echo(path)
 

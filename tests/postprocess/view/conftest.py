@@ -5,10 +5,12 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from cases import LakeAtRest
-from mesh import VoronoiMesh
+from cases.plane.waves import InertiaGravityWave
+from mesh import VoronoiMesh, periodic_mesh
 from mesh.parts.culling import culled
 from swe import Simulation
 
@@ -63,5 +65,25 @@ def sea_run(icosahedral_mesh: VoronoiMesh, tmp_path_factory: pytest.TempPathFact
     directory = tmp_path_factory.mktemp("view") / "sea"
     Simulation(sea, LakeAtRest(), directory, time_step=600.0, snapshot_interval=1200.0).run(
         days=1200.0 / 86400.0, progress=False
+    )
+    return directory
+
+
+@pytest.fixture(scope="session")
+def irregular_plane() -> VoronoiMesh:
+    """Cells of different shapes on a plane of 800 by 600 km that is periodic in both directions."""
+    column, row = np.meshgrid(np.arange(16), np.arange(14))
+    shaken = np.random.default_rng(17).uniform(-0.3, 0.3, size=(column.size, 2))
+    places = np.column_stack([(column + 0.5 * (row % 2)).ravel(), row.ravel()]) + shaken
+    return periodic_mesh(places * np.array([8e5 / 16, 6e5 / 14]), (8e5, 6e5))
+
+
+@pytest.fixture(scope="session")
+def plane_run(irregular_plane: VoronoiMesh, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Directory of a wave on that plane, three snapshots; do not write to."""
+    directory = tmp_path_factory.mktemp("view") / "plane"
+    wave = InertiaGravityWave(x_length=8e5, y_length=6e5)
+    Simulation(irregular_plane, wave, directory, time_step=200.0, snapshot_interval=3600.0).run(
+        days=7200.0 / 86400.0, progress=False
     )
     return directory

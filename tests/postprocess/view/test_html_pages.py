@@ -3,6 +3,7 @@
 import json
 import re
 import shutil
+from collections.abc import Callable
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,6 +11,8 @@ import netCDF4
 import numpy as np
 import pytest
 
+from mesh import VoronoiMesh, hexagon_mesh
+from mesh.voronoi_mesh import mesh_in_words
 from postprocess import open_run
 from postprocess.view import html_page, page_of, view_page
 from swe.errors import InputError
@@ -86,6 +89,56 @@ def test_what_cannot_be_shown_is_told(mountain_run: Path, sea_run: Path, tmp_pat
     (tmp_path / "folder.html").mkdir()
     with pytest.raises(InputError, match=r"folder\.html cannot be written, as it exists and is not a file; choose"):
         view_page(run, tmp_path / "folder.html")
+
+
+def test_a_mesh_alone_has_a_page_of_its_measures(icosahedral_mesh: VoronoiMesh, mountain_run: Path) -> None:
+    mesh = icosahedral_mesh.scaled(6371e3)
+    content = content_of(page_of(mesh))
+    assert content["title"] == mesh_in_words(mesh)
+    assert (content["days"], content["panes"]) == ([], [])
+    assert [field["name"] for field in content["fields"]] == ["cell area", "sigma", "distance to centroid"]
+    [area] = content["fields"][0]["panes"]
+    back = area["low"] + (area["high"] - area["low"]) / (2**16 - 2) * unpacked(area["values"], 1, 16)[0]
+    np.testing.assert_allclose(back, mesh.area_cell / 1e6, rtol=1e-5)
+    for others in ({"other": open_run(mountain_run)}, {"fields": ["thickness"]}):
+        with pytest.raises(InputError, match="a mesh alone has no run beside it"):
+            page_of(mesh, **others)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("make", "unit"),
+    [
+        (lambda: hexagon_mesh((6e5, 3e5 * np.sqrt(3.0)), (6, 6)), "km²"),
+        (lambda: hexagon_mesh((60.0, 30.0 * np.sqrt(3.0)), (6, 6)), "m²"),
+    ],
+)
+def test_regular_cells_are_all_the_same(make: Callable[[], VoronoiMesh], unit: str) -> None:
+    """Round-off between them would fill the colours, and small cells have their areas in square metres."""
+    mesh = make()
+    area, sigma, _ = content_of(page_of(mesh))["fields"]
+    assert area["units"] == unit
+    [pane] = area["panes"]
+    metres = 1e6 if unit == "km²" else 1.0
+    assert pane["low"] == pane["high"] == pytest.approx(mesh.area_cell[0] / metres, rel=1e-12)
+    assert sigma["panes"][0]["low"] == sigma["panes"][0]["high"] == pytest.approx(1.0)
+
+
+def test_areas_on_the_unit_sphere_are_solid_angles(icosahedral_mesh: VoronoiMesh) -> None:
+    assert icosahedral_mesh.sphere_radius == 1.0
+    assert content_of(page_of(icosahedral_mesh))["fields"][0]["units"] == "sr"
+
+
+def test_two_runs_on_a_plane(plane_run: Path, mountain_run: Path, tmp_path: Path) -> None:
+    run = open_run(plane_run)
+    assert len(content_of(page_of(run, open_run(plane_run)))["panes"]) == 3
+    moved = Path(shutil.copytree(plane_run, tmp_path / "moved"))
+    with netCDF4.Dataset(moved / "mesh.nc", "a") as file:
+        for name in ("xCell", "xEdge", "xVertex"):
+            file[name][:] += 1e3
+    with pytest.raises(InputError, match="different meshes"):
+        page_of(run, open_run(moved))
+    with pytest.raises(InputError, match="different meshes"):
+        page_of(run, open_run(mountain_run))
 
 
 def test_a_page_never_replaces_a_file_of_a_run(mountain_run: Path, tmp_path: Path) -> None:

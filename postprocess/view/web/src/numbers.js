@@ -25,9 +25,5 @@ export function inBrackets(power, units) {
   return inside ? ` (${inside})` : "";
 }
 
-const inDegrees = (angle) => Math.abs((angle * 180) / Math.PI).toFixed(2);
-
-/** A place, radians, in degrees. */
-export function placeInWords({ lon, lat }) {
-  return `${inDegrees(lat)}° ${lat < 0 ? "S" : "N"}, ${inDegrees(lon)}° ${lon < 0 ? "W" : "E"}`;
-}
+/** The size of an angle, radians, in degrees. */
+export const inDegrees = (angle) => Math.abs((angle * 180) / Math.PI).toFixed(2);

@@ -2,33 +2,18 @@
 
 import { showBars } from "./bars.js";
 import { followKeys, followPointer } from "./controls.js";
-import { fansOf } from "./fans.js";
 import { Field, rounded } from "./fields.js";
-import { inDigits, placeInWords, powerFor, tenTo } from "./numbers.js";
-import { coastOf, pointsOf, ringsOf } from "./outlines.js";
+import { inDigits, powerFor, tenTo } from "./numbers.js";
+import { coastOf, ringsOf } from "./outlines.js";
 import { Picker } from "./picking.js";
-import { aboutZero, clamp, placeOf, pointOf, PROJECTIONS } from "./projections.js";
+import { clamp } from "./projections.js";
 import { Picture } from "./scene.js";
+import { surfaceOf } from "./surfaces.js";
 import { bytesOf } from "./unpack.js";
 
 const NOUNS = { nCells: "cell", nEdges: "edge", nVertices: "vertex" };
 const MILLISECONDS_A_SNAPSHOT = 160;
-const START = { lon: -Math.PI / 2, lat: Math.PI / 9, zoom: 1 };
 const SOME = 4; // magnification that every mesh allows; others allow as much as brings one cell to fill the picture
-
-/** A view of all cells of a mesh that does not cover the globe. */
-function overSea({ xyz }, [first, count]) {
-  const sum = [0, 0, 0];
-  for (let i = 3 * first; i < 3 * (first + count); i++) sum[i % 3] += xyz[i];
-  const length = Math.hypot(...sum) || 1;
-  let nearest = 1;
-  for (let i = first; i < first + count; i++) {
-    const along = (xyz[3 * i] * sum[0] + xyz[3 * i + 1] * sum[1] + xyz[3 * i + 2] * sum[2]) / length;
-    nearest = Math.min(nearest, along);
-  }
-  const reach = nearest > 0 ? Math.sqrt(1 - nearest * nearest) : 1;
-  return { ...placeOf(sum), zoom: Math.max(1, 0.8 / Math.max(reach, 1e-6)) };
-}
 
 const part = (id) => document.getElementById(id);
 
@@ -38,20 +23,21 @@ class Page {
     this.fields = content.fields.map((about) => new Field(about, content.mesh.places[about.place].count));
     this.palettes = content.palettes.map((each) => ({ ...each, colours: bytesOf(each.colours) }));
     this.panes = Math.max(1, content.panes.length);
-    this.state = { camera: { ...START }, projection: "globe", row: 0, panes: this.panes, pointed: -1 };
+    this.surface = surfaceOf(content.mesh);
+    this.state = { projection: Object.keys(this.surface.views)[0], row: 0, panes: this.panes, pointed: -1 };
     this.places = {};
     this.pointer = null;
     this.closest = Math.max(SOME, 1 / content.mesh.spacing);
   }
 
   async open() {
-    this.picture = new Picture(part("canvas"));
+    this.picture = new Picture(part("canvas"), this.surface);
     for (const palette of this.palettes) palette.texture = this.picture.palette(palette.colours);
     this.fill();
-    this.points = await pointsOf(this.content.mesh);
-    this.start = this.content.mesh.closed ? START : overSea(this.points, this.content.mesh.cellPoints);
-    this.state.camera = { ...this.start };
-    this.picture.addCoast(this.points, await coastOf(this.content.mesh));
+    await this.surface.load();
+    this.state.camera = { ...this.surface.start };
+    this.picture.addFrame();
+    this.picture.addLines(this.surface.coast(await coastOf(this.content.mesh)), 3, this.picture.coastInk);
     await this.choose(0);
     this.listen();
     part("message").hidden = true;
@@ -63,6 +49,8 @@ class Page {
     part("field").append(...this.fields.map((field, i) => option(field.name.replaceAll("_", " "), i)));
     part("palette").append(...this.palettes.map((palette) => option(palette.name, palette.name)));
     part("titles").append(...this.content.panes.map((text) => Object.assign(document.createElement("span"), { textContent: text })));
+    part("projection").parentElement.hidden = this.surface.views[part("projection").value] === undefined;
+    part("slider").parentElement.hidden = part("range").parentElement.hidden = this.content.days.length === 0;
     part("slider").max = this.content.days.length - 1;
     part("play").disabled = this.content.days.length < 2;
   }
@@ -73,7 +61,7 @@ class Page {
     part("range").addEventListener("change", () => this.colour());
     part("projection").addEventListener("change", (event) => this.project(event.target.value));
     part("whole").addEventListener("click", () => {
-      this.state.camera = { ...this.start };
+      this.state.camera = { ...this.surface.start };
       this.move();
     });
     part("slider").addEventListener("input", (event) => this.show(Number(event.target.value)));
@@ -85,7 +73,7 @@ class Page {
       leave: () => this.point(null),
     });
     followKeys({
-      step: (by) => this.show(clamp(this.state.row + by, 0, this.content.days.length - 1)),
+      step: (by) => this.show(clamp(this.state.row + by, 0, Math.max(0, this.content.days.length - 1))),
       play: () => this.play(),
       turn: (dx, dy) => this.turn(dx, dy),
       zoom: (factor) => this.zoom(factor),
@@ -98,8 +86,8 @@ class Page {
   async place(name) {
     this.places[name] ??= (async () => {
       const rings = await ringsOf(this.content.mesh.places[name], this.content.mesh.numberBits);
-      const fans = fansOf(this.points, rings);
-      const picker = new Picker(this.points, rings, fans.centres, this.content.mesh.closed);
+      const fans = this.surface.fans(rings);
+      const picker = new Picker(this.surface, rings, fans.centres, this.content.mesh.closed);
       return { layer: this.picture.addPatches(fans), picker };
     })();
     return this.places[name];
@@ -123,8 +111,8 @@ class Page {
     this.state.row = row;
     const { field, textures } = this.shown;
     textures.forEach((texture, pane) => this.picture.fill(texture, field.row(pane, row)));
+    const day = this.content.days.length ? `day ${Number(this.content.days[row].toFixed(4))}` : "";
     part("slider").value = row;
-    const day = `day ${Number(this.content.days[row].toFixed(4))}`;
     part("day").textContent = day;
     part("slider").setAttribute("aria-valuetext", day);
     this.colour();
@@ -166,11 +154,7 @@ class Page {
   }
 
   turn(dx, dy) {
-    const { camera } = this.state;
-    const { scale } = this.picture.framing(this.state);
-    const shrunk = Math.max(0.2, Math.cos(camera.lat));
-    camera.lon = aboutZero(camera.lon - dx / scale / (this.state.projection === "globe" ? shrunk : 0.9));
-    camera.lat = clamp(camera.lat + dy / scale, -Math.PI / 2, Math.PI / 2);
+    this.surface.turn(this.state.camera, dx, dy, this.picture.framing(this.state), this.state.projection);
     this.move();
   }
 
@@ -180,10 +164,7 @@ class Page {
     const before = x === null ? null : this.seen(x, y)?.place;
     camera.zoom = clamp(camera.zoom * factor, 0.5, this.closest);
     const after = before && this.seen(x, y)?.place;
-    if (after) {
-      camera.lon = aboutZero(camera.lon + aboutZero(before.lon - after.lon));
-      camera.lat = clamp(camera.lat + before.lat - after.lat, -Math.PI / 2, Math.PI / 2);
-    }
+    if (after) this.surface.hold(camera, before, after, this.picture.framing(this.state));
     this.move();
   }
 
@@ -193,7 +174,7 @@ class Page {
     const pane = boxes.findIndex((box) => x >= box.x && x < box.x + width && y >= box.y && y < box.y + height);
     if (pane < 0) return null;
     const [right, up] = [(x - boxes[pane].x - width / 2) / scale + middle[0], (height / 2 - y + boxes[pane].y) / scale + middle[1]];
-    const place = PROJECTIONS[this.state.projection].place(right, up, this.state.camera);
+    const place = this.surface.views[this.state.projection].place(right, up, this.state.camera);
     return place && { pane, place };
   }
 
@@ -211,15 +192,17 @@ class Page {
   /** Tell number, value and place of what is under the pointer. */
   read() {
     const seen = this.pointer && this.seen(...this.pointer);
-    const number = seen ? this.shown.place.picker.at(pointOf(seen.place.lon, seen.place.lat)) : -1;
+    const { surface } = this;
+    const number = seen ? this.shown.place.picker.at(seen.place, this.state.camera) : -1;
     this.state.pointed = number;
     this.reading = null;
-    let text = seen ? `land at ${placeInWords({ ...seen.place, lon: aboutZero(seen.place.lon) })}` : "Point at a cell to read its value.";
+    let text = seen ? `${surface.outside} at ${surface.inWords(seen.place)}` : "Point at a cell to read its value.";
     if (number >= 0) {
       const { field } = this.shown;
       const values = field.panes.map((_, pane) => field.value(pane, this.state.row, number));
-      this.reading = { number, place: seen.place, pane: seen.pane, values };
-      text = `${NOUNS[field.place]} ${number} at ${placeInWords({ ...seen.place, lon: aboutZero(seen.place.lon) })}: ${values.map((value, pane) => this.inWords(value, pane)).join("; ")}`;
+      const place = surface.home(seen.place);
+      this.reading = { number, place, pane: seen.pane, values };
+      text = `${NOUNS[field.place]} ${number} at ${surface.inWords(place)}: ${values.map((value, pane) => this.inWords(value, pane)).join("; ")}`;
     }
     part("reading").textContent = text;
   }

@@ -2,42 +2,59 @@
 
 const CANDIDATES = 12;
 
+/** Whether a ring of corners `first` to `end`, which `flat` brings to [x, y], goes round zero. */
+export function goesRound(first, end, flat) {
+  let round = false;
+  let [ax, ay] = flat(end - 1);
+  for (let k = first; k < end; k++) {
+    const [bx, by] = flat(k);
+    if (ay > 0 !== by > 0 && ax + ((bx - ax) * -ay) / (by - ay) > 0) round = !round;
+    [ax, ay] = [bx, by];
+  }
+  return round;
+}
+
 export class Picker {
-  /** `centres` are unit vectors within the polygons; `closed` where these cover the sphere. */
-  constructor(points, rings, centres, closed) {
-    Object.assign(this, { points, rings, centres, closed });
+  /** `centres` are points within the polygons; `closed` where these cover the surface. */
+  constructor(surface, rings, centres, closed) {
+    Object.assign(this, { surface, rings, centres, closed });
     const count = centres.length / 3;
     this.width = Math.max(2, Math.floor(Math.sqrt(count / 12)));
     const boxes = this.width ** 3;
     this.boxes = new Map();
     for (let i = 0; i < count; i++) {
-      const key = this.key(...[0, 1, 2].map((axis) => this.box(centres[3 * i + axis])));
+      const key = this.key(...[0, 1, 2].map((axis) => this.box(centres[3 * i + axis], axis)));
       if (!this.boxes.has(key)) this.boxes.set(key, []);
       this.boxes.get(key).push(i);
     }
     this.farthest = boxes > 1 ? this.width : 1;
   }
 
-  box(value) {
-    return Math.min(this.width - 1, Math.max(0, Math.floor(((value + 1) / 2) * this.width)));
+  box(value, axis) {
+    const share = (value - this.surface.low[axis]) / this.surface.size;
+    return Math.min(this.width - 1, Math.max(0, Math.floor(share * this.width)));
   }
 
   key(i, j, k) {
     return i + this.width * (j + this.width * k);
   }
 
-  /** Number of the polygon at a unit vector; -1 where there is none. */
-  at(point) {
-    const near = this.nearest(point);
-    const found = near.find((number) => this.holds(number, point));
-    if (found !== undefined) return found;
-    return this.closed && near.length ? near[0] : -1;
+  /** Number of the polygon that a camera sees at a place; -1 where there is none. */
+  at(place, camera) {
+    const { surface } = this;
+    const points = surface.images(place);
+    for (const point of points) {
+      const found = this.nearest(point).find((number) => surface.holds(this.rings, number, this.centre(number), point));
+      if (found !== undefined) return surface.draws(this.rings, found, this.centre(found), point, place, camera) ? found : -1;
+    }
+    // Between the polygons of a closed surface there is nothing but round-off.
+    return this.closed ? (this.nearest(points[0])[0] ?? -1) : -1;
   }
 
   /** The nearest centres, the nearest first. */
   nearest(point) {
-    const middle = point.map((value) => this.box(value));
-    const side = 2 / this.width;
+    const middle = point.map((value, axis) => this.box(value, axis));
+    const side = this.surface.size / this.width;
     let found = [];
     for (let reach = 1; reach <= this.farthest; reach = 2 * reach) {
       found = this.within(middle, reach).map((number) => ({ number, distance: this.distance(number, point) }));
@@ -63,26 +80,7 @@ export class Picker {
     return Math.hypot(centres[3 * number] - x, centres[3 * number + 1] - y, centres[3 * number + 2] - z);
   }
 
-  /** Whether the sides of a polygon, seen from the middle of the sphere, go round a point. */
-  holds(number, [x, y, z]) {
-    const { starts, rings } = this.rings;
-    const { xyz } = this.points;
-    if (this.distance(number, [x, y, z]) > 1) return false;
-    // Any two directions across the point's own.
-    const across = Math.abs(z) < 0.9 ? [-y, x, 0] : [0, -z, y];
-    const other = [y * across[2] - z * across[1], z * across[0] - x * across[2], x * across[1] - y * across[0]];
-    let turned = false;
-    const flat = (k) => {
-      const [px, py, pz] = xyz.subarray(3 * rings[k], 3 * rings[k] + 3);
-      const depth = px * x + py * y + pz * z;
-      return [(px * across[0] + py * across[1] + pz * across[2]) / depth, (px * other[0] + py * other[1] + pz * other[2]) / depth];
-    };
-    let [ax, ay] = flat(starts[number + 1] - 1);
-    for (let k = starts[number]; k < starts[number + 1]; k++) {
-      const [bx, by] = flat(k);
-      if (ay > 0 !== by > 0 && ax + ((bx - ax) * -ay) / (by - ay) > 0) turned = !turned;
-      [ax, ay] = [bx, by];
-    }
-    return turned;
+  centre(number) {
+    return this.centres.subarray(3 * number, 3 * number + 3);
   }
 }

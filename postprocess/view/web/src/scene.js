@@ -1,17 +1,16 @@
 // The picture: one camera for all panes, each of which shows its own values.
 
-import { Camera, DataTexture, Matrix3, NearestFilter, RedIntegerFormat, RGBAFormat, Scene, UnsignedByteType, UnsignedShortType, Vector2, Vector3, Vector4, WebGLRenderer } from "three";
-import { coastPieces, graticule, ground, lines, patches } from "./layers.js";
-import { axesOf, PROJECTIONS } from "./projections.js";
+import { Camera, DataTexture, NearestFilter, RedIntegerFormat, RGBAFormat, Scene, UnsignedByteType, UnsignedShortType, Vector2, Vector3, Vector4, WebGLRenderer } from "three";
+import { ground, lines, patches } from "./layers.js";
 
 const ACROSS = 2048; // values in a row of a texture
 const MARGIN = 0.94;
 
 /** Boxes of equal panes, in columns and rows such that the view is as large as can be. */
-function arranged(count, size, projection) {
+function arranged(count, size, view) {
   const choices = [1, 2, 3].filter((columns) => columns <= count).map((columns) => {
     const [width, height] = [size.width / columns, size.height / Math.ceil(count / columns)];
-    return { columns, width, height, fit: Math.min(width / projection.width, height / projection.height) };
+    return { columns, width, height, fit: Math.min(width / view.width, height / view.height) };
   });
   const { columns, width, height } = choices.reduce((best, each) => (each.fit > best.fit ? each : best));
   const boxes = Array.from({ length: count }, (_, i) => ({ x: (i % columns) * width, y: Math.floor(i / columns) * height }));
@@ -19,7 +18,8 @@ function arranged(count, size, projection) {
 }
 
 export class Picture {
-  constructor(canvas) {
+  constructor(canvas, surface) {
+    this.surface = surface;
     this.renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
     this.renderer.autoClear = false;
     this.scene = new Scene();
@@ -29,8 +29,6 @@ export class Picture {
       scale: { value: new Vector2() },
       shift: { value: new Vector2() },
       half_: { value: new Vector2() },
-      view: { value: new Matrix3() },
-      middle: { value: 0 },
       pixels: { value: new Vector2() },
       land: { value: new Vector3() },
       palette: { value: null },
@@ -40,27 +38,34 @@ export class Picture {
       toTone: { value: new Vector2() },
       pointed: { value: -1 },
       density: { value: 1 },
+      ...surface.uniforms,
     };
-    this.ground = ground(this.uniforms);
-    this.scene.add(this.ground);
     const ink = (r, g, b, a, width) => ({ ...this.uniforms, ink: { value: new Vector4(r, g, b, a) }, width: { value: width } });
     this.coastInk = ink(0.05, 0.05, 0.05, 1, 1.6);
     this.lineInk = ink(0, 0, 0, 0.16, 1);
-    this.add(lines(graticule(), 2, this.lineInk));
+  }
+
+  /** Draw what lies behind the cells and over them, the ground and lines, where the surface has such. */
+  addFrame() {
+    const pairs = this.surface.graticule();
+    if (!pairs.length) return;
+    this.scene.add(ground(this.uniforms));
+    this.addLines(pairs, 2, this.lineInk);
   }
 
   add(layer) {
     this.layers.push(layer);
-    this.scene.add(...layer.globe, ...layer.map);
+    this.scene.add(...Object.values(layer.views).flat());
     return layer;
   }
 
-  addCoast(points, ends) {
-    if (ends.length) this.add(lines(coastPieces(points, ends), 3, this.coastInk));
+  /** Draw lines between pairs of places. */
+  addLines(pairs, order, ink) {
+    if (pairs.length) this.add({ views: lines(pairs, order, this.surface.kinds, ink) });
   }
 
   addPatches(fans) {
-    return this.add({ ...patches(fans, this.uniforms), ofPlace: true });
+    return this.add({ views: patches(fans, this.surface.kinds, this.uniforms), fans, ofPlace: true });
   }
 
   /** A texture of the colours (three bytes each) of a palette. */
@@ -95,12 +100,12 @@ export class Picture {
     return { width: Math.max(1, clientWidth), height: Math.max(1, clientHeight) };
   }
 
-  /** How panes lie: their boxes, pixels for a radius of the sphere, and the middle of each pane on the view. */
+  /** How panes lie: their boxes, pixels for a unit of length of the surface, and the middle of each pane on the view. */
   framing(state) {
-    const projection = PROJECTIONS[state.projection];
-    const { width, height, boxes } = arranged(state.panes, this.size(), projection);
-    const scale = MARGIN * Math.min(width / projection.width, height / projection.height) * state.camera.zoom;
-    return { width, height, boxes, scale, middle: projection.middle(state.camera, height / 2 / scale) };
+    const view = this.surface.views[state.projection];
+    const { width, height, boxes } = arranged(state.panes, this.size(), view);
+    const scale = MARGIN * Math.min(width / view.width, height / view.height) * state.camera.zoom;
+    return { width, height, boxes, scale, middle: view.middle(state.camera, height / 2 / scale, width / 2 / scale) };
   }
 
   /** Draw all panes; `panes` have `texture`, `missing`, `palette`, `scale` and `offset` to tones. */
@@ -114,19 +119,17 @@ export class Picture {
     const { width, height, boxes, scale, middle } = this.framing(state);
     uniforms.scale.value.set((2 * scale) / width, (2 * scale) / height);
     uniforms.shift.value.set(-middle[0] * uniforms.scale.value.x, -middle[1] * uniforms.scale.value.y);
-    const { width: across, height: high } = PROJECTIONS[state.projection];
+    const { width: across, height: high } = this.surface.views[state.projection];
     uniforms.half_.value.set(across / 2, high / 2);
-    uniforms.view.value.set(...axesOf(state.camera).flat());
-    uniforms.middle.value = state.camera.lon;
+    this.surface.aim(state.camera, shownLayer);
     uniforms.pixels.value.set((width * density) / 2, (height * density) / 2);
     uniforms.density.value = density;
     uniforms.pointed.value = state.pointed;
     this.coastInk.width.value = 1.6 * density;
     this.lineInk.width.value = density;
     for (const layer of this.layers)
-      for (const kind of ["globe", "map"])
-        for (const mesh of layer[kind])
-          mesh.visible = kind === state.projection && (!layer.ofPlace || layer === shownLayer);
+      for (const [view, meshes] of Object.entries(layer.views))
+        for (const mesh of meshes) mesh.visible = view === state.projection && (!layer.ofPlace || layer === shownLayer);
     renderer.setScissorTest(true);
     panes.forEach((pane, i) => {
       uniforms.values.value = pane.texture;

@@ -1,7 +1,8 @@
-// Programs of the graphics card. With MAP they draw Mollweide's map, else the globe from far above the camera's place.
+// Programs of the graphics card. With MAP they draw Mollweide's map, with PLANE a plane from above, else the globe from
+// far above the camera's place.
 
-// `scale` and `shift` bring radii of the sphere to the picture, -1 to 1; `copy` draws once more what the rim of the map
-// cuts, on its other side.
+// `scale` and `shift` bring lengths to the picture, -1 to 1; `copy` draws once more, on the other side, what the rim of
+// the map cuts, or the border of one period of the plane.
 const PLACING = /* glsl */ `
 precision highp float;
 uniform vec2 scale;
@@ -20,6 +21,22 @@ vec3 placed(vec4 where) {
   vec2 at = vec2(0.900316316157106 * (where.x - middle - turn) * where.y, 1.4142135623730951 * where.z);
   return vec3(at, far ? -1.0 : 1.0);
 }
+#elif defined(PLANE)
+uniform vec2 centre;
+uniform vec2 periods;
+uniform vec2 copy;
+
+vec3 placed(vec4 where) {
+  vec2 turn = vec2(0.0);
+  for (int axis = 0; axis < 2; axis++) {
+    if (periods[axis] == 0.0) continue;
+    float from = where[axis + 2] - centre[axis];
+    float nearest = periods[axis] * floor(from / periods[axis] + 0.5);
+    float other = from > nearest ? periods[axis] : -periods[axis];
+    turn[axis] = copy[axis] > 0.5 ? nearest + other : nearest;
+  }
+  return vec3(where.xy - centre - turn, 1.0);
+}
 #else
 uniform mat3 view;
 
@@ -31,8 +48,10 @@ vec3 placed(vec3 where) {
 
 // Flat colours: each corner brings the value of its own polygon, looked up in a texture that holds all of a snapshot.
 export const PATCH_CORNERS = /* glsl */ `${PLACING}
-#ifdef MAP
+#if defined(MAP)
 in vec4 onMap;
+#elif defined(PLANE)
+in vec4 place;
 #else
 in vec3 position;
 #endif
@@ -46,16 +65,19 @@ flat out float number;
 out float within;
 
 void main() {
-#ifdef MAP
+#if defined(MAP)
   vec3 at = placed(onMap);
   plane = at.xy;
   bool hidden = at.z < 0.0;
+#elif defined(PLANE)
+  vec3 at = placed(place);
+  bool hidden = false;
 #else
   vec3 at = placed(position);
   bool hidden = false;
 #endif
-  int place = int(part.x);
-  uint value = texelFetch(values, ivec2(place % across, place / across), 0).r;
+  int polygon = int(part.x);
+  uint value = texelFetch(values, ivec2(polygon % across, polygon / across), 0).r;
   tone = value == missing ? -1.0 : clamp(float(value) * toTone.x + toTone.y, 0.0, 1.0);
   number = part.x;
   within = part.y;
@@ -94,7 +116,7 @@ void main() {
 
 // Lines of some pixels' width: a strip of four corners for each piece.
 export const LINE_CORNERS = /* glsl */ `${PLACING}
-#ifdef MAP
+#if defined(MAP) || defined(PLANE)
 in vec4 start;
 in vec4 end;
 #else
@@ -116,7 +138,13 @@ void main() {
 #ifdef MAP
   plane = mix(a.xy, b.xy, corner.x);
 #endif
+#ifdef PLANE
+  // Copies of polygons hold those that the border cuts; of lines, the others are left out here.
+  vec2 beyond = 0.5 * abs(a.xy + b.xy) - 0.5 * periods;
+  bool hidden = any(greaterThan(copy * beyond, 0.4995 * abs(a.xy - b.xy)));
+#else
   bool hidden = min(a.z, b.z) < 0.0;
+#endif
   gl_Position = hidden ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(mix(first, last, corner.x) + sideways * width / pixels, 0.0, 1.0);
 }
 `;
