@@ -142,11 +142,16 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
             raise
         raise MeshError(f"{path}: holds no density that can be used ({error}); give a NetCDF file with one") from error
     name = f"{path}: {variable}"
-    if field.values.min() < 0.0 and shaping.floor == 0.0:
-        raise MeshError(f"{name} falls to {field.values.min():g}; a density is not negative, give it a floor")
-    if field.values.max() <= 0.0 and shaping.floor == 0.0:
-        raise MeshError(f"{name} is zero everywhere; a density is positive somewhere")
+    require_usable(field.values, shaping, name)
     return FileDensity(_interpolated(field, shaping, name), path, variable, shaping, field.digest)
+
+
+def require_usable(values: Array, shaping: Shaping, name: str) -> None:
+    """Raise `MeshError` where a field of this name is negative, or zero everywhere, and no floor mends that."""
+    if values.min() < 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{name} falls to {values.min():g}; a density is not negative, give it a floor")
+    if values.max() <= 0.0 and shaping.floor == 0.0:
+        raise MeshError(f"{name} is zero everywhere; a density is positive somewhere")
 
 
 def _read_field(file: netCDF4.Dataset, variable: netCDF4.Variable, path: Path) -> _Field:

@@ -1,4 +1,4 @@
-"""Densities on planes: by name, or functions of places (m, 3) in metres, with z = 0."""
+"""Densities on planes: by name, from files, or functions of places (m, 3) in metres, with z = 0."""
 
 import os
 from dataclasses import dataclass
@@ -6,8 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Array
+from mesh.density.gridded import Shaping
 from mesh.density.named import Density, uniform
+from mesh.density.planar_grid import read_density_on_plane
 from mesh.errors import MeshError
+from mesh.mesh_request import MeshRequest
 
 CIRCLE = "refined-circle"
 
@@ -44,14 +47,24 @@ def named_on_plane(name: str, lengths: Array) -> Density | None:
     return uniform if name == "uniform" else None
 
 
-def density_on_plane(density: str | os.PathLike[str] | Density, lengths: Array) -> Density:
-    """The density, found by its name if it is a name; raises `MeshError` where there is none of that name."""
-    if not isinstance(density, str | os.PathLike):
-        return density
-    found = named_on_plane(os.fspath(density), lengths)
-    if found is None:
-        raise MeshError(
-            f"there is no density named '{os.fspath(density)}' on planes; choose uniform or {CIRCLE}, or give a "
-            "function of places to mesh_on_plane"
-        )
-    return found
+def density_on_plane(request: MeshRequest, lengths: Array) -> Density:
+    """The density that is asked for on a plane of these lengths (2,), found by its name or read from its file.
+
+    Raises `MeshError` where there is none of that name, or if one that is not from a file should be shaped.
+    """
+    shaping = Shaping(request.density_floor, request.density_power, request.density_smoothing)
+    given = request.density
+    if isinstance(given, str | os.PathLike):
+        name = os.fspath(given)
+        if name.endswith(".nc"):
+            return read_density_on_plane(name, request.density_variable, shaping)
+        found = named_on_plane(name, lengths)
+        if found is None:
+            raise MeshError(
+                f"there is no density named '{name}' on planes; choose uniform or {CIRCLE}, or a NetCDF file by its "
+                "name in .nc"
+            )
+        given = found
+    if (shaping, request.density_variable) != (Shaping(), MeshRequest.density_variable):
+        raise MeshError("only densities from files are shaped; leave variable, floor, power and smoothing out")
+    return given

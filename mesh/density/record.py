@@ -5,6 +5,7 @@ the values, so that it is found again where the file is still there and the same
 """
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 
 import netCDF4
@@ -15,6 +16,7 @@ from mesh.conventions import MeshOutline
 from mesh.density.gridded import FileDensity, Shaping, read_density
 from mesh.density.named import NAMED, Density, uniform
 from mesh.density.planar import CIRCLE, RefinedDisc, named_on_plane
+from mesh.density.planar_grid import read_density_on_plane
 from mesh.density.scattered import density_from_cells
 from mesh.errors import MeshError
 from mesh.geometry.sphere import normalize
@@ -63,7 +65,7 @@ def density_of(mesh: VoronoiMesh) -> tuple[Density | None, str]:
     if name in NAMED:
         return NAMED[name], ""
     if mesh.density_source:
-        return _from_source(mesh.density_source, name)
+        return _from_source(mesh.density_source, name, read_density)
     if name:
         what = f"the {name}" if name.startswith(FUNCTION) else f"'{name}', of which the mesh holds only the name"
         return None, f"unknown, since the density was {what}"
@@ -81,12 +83,14 @@ def _density_on_plane(mesh: VoronoiMesh) -> tuple[Density | None, str]:
     """The same on a plane, whose lengths are its periods, or reach from wall to wall."""
     if not mesh.density_name and np.ptp(mesh.mesh_density) == 0.0:
         return uniform, ""
+    if mesh.density_source:
+        return _from_source(mesh.density_source, mesh.density_name, read_density_on_plane)
     periods, farthest = np.array([mesh.x_period, mesh.y_period]), mesh.vertex_points[:, :2].max(axis=0)
     density = named_on_plane(mesh.density_name, np.where(periods > 0.0, periods, farthest))
     return density, "" if density is not None else "unknown, since the density on a plane is known by its name alone"
 
 
-def _from_source(source: str, name: str) -> tuple[Density | None, str]:
+def _from_source(source: str, name: str, read: Callable[..., FileDensity]) -> tuple[Density | None, str]:
     """The density that `source_of` describes, looked for under its `name` in this folder, then where it was."""
     try:
         told = json.loads(source)
@@ -96,7 +100,7 @@ def _from_source(source: str, name: str) -> tuple[Density | None, str]:
         return None, "unknown, since the attribute density_source of the mesh is damaged"
     for path in paths:
         try:
-            density = read_density(path, variable, shaping)
+            density = read(path, variable, shaping)
         except MeshError:
             continue
         if density.digest == digest:

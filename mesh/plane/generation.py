@@ -30,7 +30,7 @@ def mesh_on_plane(request: MeshRequest, callback: Callback | None = None) -> Vor
     plane = require_possible_on_plane(request)
     if request.hexagons is not None:
         return hexagon_mesh((plane.width, plane.height), request.hexagons, request.periodic)
-    density = density_on_plane(request.density, plane.lengths)
+    density = density_on_plane(request, plane.lengths)
     limits = limits_of(request)
     points = starting_points(plane, cells_of(request), density, request.start, request.seed)
     result = converge_on_plane(points, plane, request.method, density, limits.since(begin), callback)

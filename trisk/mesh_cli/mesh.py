@@ -56,7 +56,7 @@ def mesh(
         typer.Option(
             "--density",
             help="uniform, refined-circle, refined-box, smooth-transition, or a NetCDF file FILE.nc; "
-            "on a plane the first two.",
+            "on a plane the first two, or a file with x and y.",
         ),
     ] = DEFAULTS.density,
     density_variable: Annotated[

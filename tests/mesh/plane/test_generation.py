@@ -1,10 +1,14 @@
 """Centroidal Voronoi meshes of planes: centroids, walls, seams, densities, and what cannot be asked for."""
 
+from pathlib import Path
+
+import netCDF4
 import numpy as np
 import pytest
 
-from mesh import MeshError, MeshRequest, mesh_on_plane, mesh_quality, validate_mesh
+from mesh import MeshError, MeshRequest, mesh_on_plane, mesh_quality, read_mesh, validate_mesh, write_mesh
 from mesh.density.planar import RefinedDisc
+from mesh.discrete.quality import quality_and_note
 from mesh.discrete.walls import wall_edges
 from mesh.generation.optimizer import Limits, Optimizer
 from mesh.plane.domain import PERIODIC, Rectangle
@@ -150,6 +154,57 @@ def test_a_density_may_be_a_function_of_places() -> None:
     near = np.hypot(mesh.x_cell - 5e4, mesh.y_cell - 5e4) < 1.5e4
     assert np.sqrt(mesh.area_cell.max() / mesh.area_cell[near].mean()) > 1.6
     np.testing.assert_allclose(mesh.mesh_density, density(mesh.cell_points))
+
+
+def write_grid(path: Path, turned: bool) -> Path:
+    """Cell widths that fall along x from 3 to 1, on a grid."""
+    axes = {"x": np.linspace(0.0, 3e5, 31), "y": np.linspace(0.0, 2e5, 5)[::-1]}
+    widths = np.broadcast_to(3.0 - 2.0 * axes["x"] / 3e5, (5, 31))
+    with netCDF4.Dataset(path, "w") as file:
+        for name, places in axes.items():
+            file.createDimension(name, len(places))
+            file.createVariable(name, "f8", (name,))[:] = places
+        dimensions = ("x", "y") if turned else ("y", "x")
+        file.createVariable("width", "f8", dimensions)[:] = widths.T if turned else widths
+    return path
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_a_density_may_come_from_a_file(tmp_path: Path, turned: bool) -> None:
+    path = write_grid(tmp_path / "widths.nc", turned)
+    shaping = {"density_variable": "width", "density_power": -4.0}
+    request = MeshRequest(
+        cells=600,
+        plane=LENGTHS,
+        periodic="none",
+        density=str(path),
+        tolerance=1e-3,
+        **shaping,  # type: ignore[arg-type]
+    )
+    mesh = mesh_on_plane(request)
+    west, east = mesh.x_cell < 5e4, mesh.x_cell > 2.5e5
+    widths = 3.0 - 2.0 * mesh.x_cell / 3e5
+    expected = np.sqrt((widths[west] ** 2).mean() / (widths[east] ** 2).mean())
+    assert np.sqrt(mesh.area_cell[west].mean() / mesh.area_cell[east].mean()) == pytest.approx(expected, rel=0.05)
+    np.testing.assert_allclose(mesh.mesh_density, widths**-4.0, rtol=0.02)
+    assert mesh_quality(mesh).residual < 1.1e-3
+    write_mesh(mesh, tmp_path / "mesh.nc")
+    assert mesh_quality(read_mesh(tmp_path / "mesh.nc")).residual < 1.1e-3
+    path.unlink()
+    assert "which is missing" in quality_and_note(read_mesh(tmp_path / "mesh.nc"))[1]
+
+
+def test_files_without_places_are_told(tmp_path: Path) -> None:
+    path = tmp_path / "field.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        file.createDimension("x", 3)
+        file.createVariable("density", "f8", ("x",))[:] = 1.0
+    with pytest.raises(MeshError, match="a density on a plane has x and y, with variables of these names"):
+        mesh_on_plane(MeshRequest(cells=100, plane=LENGTHS, density=str(path)))
+    with pytest.raises(MeshError, match="there is no such file"):
+        mesh_on_plane(MeshRequest(cells=100, plane=LENGTHS, density="missing.nc"))
+    with pytest.raises(MeshError, match="only densities from files are shaped"):
+        mesh_on_plane(MeshRequest(cells=100, plane=LENGTHS, density="refined-circle", density_power=2.0))
 
 
 def test_coarse_grids_carry_constants_and_save_iterations() -> None:
