@@ -37,8 +37,8 @@ def draw(axes: Axes, title: str) -> None:
 
 
 # %%
-# **Bisection.** Both ends of every edge inside are as far from one of its generators as from the other, so the edge lies
-# on their perpendicular bisector; and no other generator is nearer.
+# **Bisection.** Both ends of every edge inside are as far from one of its generators as from the other, so the edge
+# lies on their perpendicular bisector; and no other generator is nearer.
 
 inside = mesh.cells_on_edge[:, 1] >= 0
 ends = corners[mesh.vertices_on_edge[inside]]

@@ -10,6 +10,8 @@ circle through three corners holds the fourth, and end with the Delaunay triangu
 # The start is as poor as can be: points are taken from west to east, and each is joined to all that it sees. Four
 # of them are the corners of the square, so that no sliver stays at the hull, whose sides cannot be flipped.
 
+from itertools import pairwise
+
 import matplotlib.pyplot as plt
 import numpy as np
 from scipy.spatial import Delaunay, cKDTree
@@ -125,7 +127,7 @@ lists = [np.sort(angles(each), axis=None) for each in [start, *history]]
 smallest = np.array([each[0] for each in lists])
 print(f"smallest angle: {smallest[0]:.3f} degrees at the start, {smallest[-1]:.3f} at the end")
 assert (np.diff(smallest) >= -1e-9).all()
-for before, after in zip(lists, lists[1:], strict=False):
+for before, after in pairwise(lists):
     change = (after - before)[np.abs(after - before) > 1e-9]
     assert change[0] > 0.0
 
@@ -154,12 +156,12 @@ draw(middle, history[half - 1], f"after {half} flips")
 draw(last, end, f"after {len(history)} flips: Delaunay")
 
 figure, axes = plt.subplots(figsize=(6, 3.5), layout="constrained")
-axes.plot(smallest)
-axes.set(xlabel="flips", ylabel="smallest angle (degrees)", yscale="log")
+axes.plot(smallest, drawstyle="steps-post")
+axes.set(xlabel="flips", ylabel="smallest angle (degrees)", ylim=(0.0, None))
 
 # %%
-# Meshes of moving generators are made with these flips too: from one iteration to the next the triangulation is repaired
-# where it has to be. Here 200 generators of a square with walls move by up to a third of their mean distance.
+# Meshes of moving generators are made with these flips too: from one iteration to the next the triangulation is
+# repaired where it has to be. Here 200 generators of a square with walls move by up to a third of their mean distance.
 
 plane = Rectangle(1.0, 1.0, "none")
 before = starting_points(plane, 200, start="random", seed=1)

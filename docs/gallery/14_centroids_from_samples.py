@@ -129,6 +129,9 @@ for count, marker in zip(counts, "os^", strict=True):
 line = np.array([1.0 / 256, 1.0 / 16])
 axes.loglog(line, np.sqrt(5.0) / 6.0 * np.sqrt(line), "k", linewidth=0.8, label="sqrt(5) / 6 sqrt(n / q)")
 axes.set(xlabel="n / q", ylabel="error (mean distances)")
+axes.minorticks_off()
+axes.set_xticks([1 / 256, 1 / 64, 1 / 16], ["1/256", "1/64", "1/16"])
+axes.set_yticks([0.02, 0.05, 0.1], ["0.02", "0.05", "0.1"])
 axes.legend(fontsize=8)
 
 # %%
@@ -151,7 +154,7 @@ for each, mesh, title in zip(axes, (by_samples, by_integrals), ("Algorithm 2, 60
     rings = zip(mesh.vertices_on_cell, mesh.n_edges_on_cell, strict=True)
     polygons = [mesh.vertex_points[ring[:sides], :2] for ring, sides in rings]
     widths = np.sqrt(mesh.area_cell)
-    cells = PolyCollection(polygons, array=widths, edgecolors="white", linewidths=0.4)
+    cells = PolyCollection(polygons, array=widths, clim=(0.03, 0.11), edgecolors="white", linewidths=0.4)
     each.add_collection(cells)
     figure.colorbar(cells, ax=each, label="width of the cells")
     each.set(title=title, xlabel="x", ylabel="y", xlim=(0, 1), ylim=(0, 1), aspect="equal")

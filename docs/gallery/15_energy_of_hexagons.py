@@ -42,8 +42,8 @@ assert as_they_are.history.iterations == 0
 # %%
 # **Planes from random points.** On a periodic plane, what remains above one are the defects: cells of five and seven
 # sides, which cost about one per cent, however many cells there are. Walls cost energy too, the less the more
-# cells there are, as only one in sqrt(n) is at a wall. Rows of points, the default start, suit boxes: they leave the
-# walls alone, and the ratio tends to one.
+# cells there are, as only some sqrt(n) of n are at walls. Rows of points, the default start, leave nearly all defects
+# to the walls, and the ratio tends to one.
 
 counts = (64, 256, 1024, 4096)
 kinds = {
@@ -77,7 +77,7 @@ axes.set(xlabel="cells", ylabel="energy over that of hexagons, less one")
 axes.legend()
 
 # %%
-# Cells without six sides, of 1024: within at random, along the walls in any box.
+# The sides of 1024 cells: from random points defects are everywhere, from rows nearly all of them are at the walls.
 
 
 def draw(axes: Axes, kind: str) -> None:
