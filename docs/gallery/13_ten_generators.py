@@ -39,14 +39,13 @@ lloyd = converged(seed=4, method="lloyd")
 energy = np.array(lloyd.history.energy)
 start = plane_mesh(starting_points(square, CELLS, start="random", seed=4), square)
 end = plane_mesh(lloyd.points, square)
-print(
-    f"{lloyd.history.iterations} iterations; residual {lloyd.history.residual[0]:.2f} to {lloyd.history.residual[-1]:.1e}"
-)
+residual = lloyd.history.residual
+print(f"{lloyd.history.iterations} iterations; residual {residual[0]:.2f} to {residual[-1]:.1e}")
 assert lloyd.reason == "tolerance"
 
 # %%
-# **The energy falls**: the integral of the squared distance to the nearest generator. It falls at every iteration, until
-# the falls are as small as round-off.
+# **The energy falls**: the integral of the squared distance to the nearest generator. It falls at every iteration,
+# until the falls are as small as round-off.
 
 falls = -np.diff(energy)
 print(f"energy {energy[0]:.6f} to {energy[-1]:.12f}; largest rise {max(0.0, -falls.min()):.1e}")
@@ -59,7 +58,7 @@ assert falls.min() >= -1e-15 * energy[0]
 middles = (np.arange(1000) + 0.5) / 1000
 grid = np.stack(np.meshgrid(middles, middles), axis=-1).reshape(-1, 2)
 on_grid = (cKDTree(square.folded(lloyd.points)[:, :2]).query(grid)[0] ** 2).mean()
-print(f"energy {on_grid:.6f} on the grid, {energy[-1]:.6f} in the cells")
+print(f"energy {on_grid:.7f} on the grid, {energy[-1]:.7f} in the cells")
 assert abs(on_grid - energy[-1]) < 1e-6
 
 # %%

@@ -2,8 +2,9 @@
 Centroids from samples
 ======================
 
-Where integrals over Voronoi cells are out of reach, samples of the density tell where centroids are: the probabilistic
-version of Lloyd's method, Algorithm 2 of Ju, Ringler and Gunzburger (2011), in the unit square, with its error measured.
+Where integrals over Voronoi cells are out of reach, samples of the density tell where centroids are: the
+probabilistic version of Lloyd's method, Algorithm 2 of Ju, Ringler and Gunzburger (2011), in the unit square, with its
+error measured.
 """
 
 # %%
