@@ -71,9 +71,12 @@ print(f"slope {slope:.3f}, expected -0.5")
 assert abs(slope + 0.5) < 0.05
 
 # %%
-# **Algorithm 2.** Each iteration takes q samples and gives each to its nearest generator. A generator x whose samples
-# have the mean u moves to ((alpha_1 j + beta_1) x + (alpha_2 j + beta_2) u) / (j + 1), where j counts its moves,
-# alpha_1 = 1 - alpha_2 and beta_1 = 1 - beta_2.
+# **Algorithm 2.** Each iteration takes :math:`q` samples and gives each to its nearest generator. A generator :math:`x`
+# whose samples have the mean :math:`u` moves to
+#
+# .. math:: \frac{(\alpha_1 j + \beta_1) x + (\alpha_2 j + \beta_2) u}{j + 1},
+#
+# where :math:`j` counts its moves, :math:`\alpha_1 + \alpha_2 = 1` and :math:`\beta_1 + \beta_2 = 1`.
 
 
 def moved(
@@ -94,11 +97,11 @@ def moved(
 
 
 # %%
-# **The error against q and n.** With alpha_2 = beta_2 = 1 each iteration is one of Lloyd's with sampled centroids.
-# The start is converged, so that all that moves the generators is the error of the samples. A cell gets q / n of them.
-# For a hexagon the root mean square distance of their mean from the centroid is sqrt(5) / 6 sqrt(n / q) distances of
-# neighbours. And where generators stand after ten more iterations, they are off the centroids of their cells, which are
-# known exactly, by about as much.
+# **The error against q and n.** With :math:`\alpha_2 = \beta_2 = 1` each iteration is one of Lloyd's with sampled
+# centroids. The start is converged, so that all that moves the generators is the error of the samples. A cell gets
+# :math:`q / n` of them, and in a hexagon the root mean square distance of their mean from the centroid is
+# :math:`\frac{\sqrt{5}}{6} \sqrt{n / q}` distances of neighbours. Where generators stand after ten iterations, they are
+# off the centroids of their cells, which are known exactly, by somewhat less.
 
 counts, per_cell = (64, 256, 1024), (16, 64, 256)
 print("    n        q   sampled centroid   generator after ten iterations   (rms, mean distances)")

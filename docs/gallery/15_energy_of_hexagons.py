@@ -1,10 +1,10 @@
-"""
+r"""
 Gersho's conjecture: hexagons
 =============================
 
-With many generators, centroidal Voronoi tessellations of least energy become hexagons nearly everywhere. No cell of
-area A has less energy, on the average, than the hexagon's 5 / (18 sqrt(3)) A^2; so the ratio of the two says how far a
-mesh is from the best there is.
+With many generators, centroidal Voronoi tessellations of least energy become hexagons nearly everywhere. On average, no
+cell of area :math:`A` has less energy than the hexagon's :math:`\frac{5}{18 \sqrt{3}} A^2`; so the ratio of the two
+says how far a mesh is from the best there is.
 """
 
 # %%
