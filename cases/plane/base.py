@@ -11,6 +11,7 @@ from mesh.arrays import Array
 from mesh.discrete.operators import normal_component, normal_velocity_from_streamfunction
 from mesh.discrete.walls import wall_edges
 from mesh.integrals.quadrature import Sampling, sample_cells
+from mesh.shown import Rows, in_words
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
 from swe.state import State
@@ -31,6 +32,12 @@ class PlaneCase(Case):
     rotation_rate: float = field(default=0.0, init=False)
     coriolis_parameter: float = parameter(1e-4, "1/s", "Coriolis parameter f0 at y = 0")
     beta: float = parameter(0.0, "1/(m s)", "Change of the Coriolis parameter with y")
+
+    def _title_and_rows(self) -> tuple[str, Rows]:
+        """See `Case`, without what a plane has not."""
+        title, rows = super()._title_and_rows()
+        told = {name: value for name, value in rows.items() if name != "sphere"}
+        return title, told | {"gravity": in_words(self.gravity, "m/s2")}
 
     @abstractmethod
     def velocity(self, x: Array, y: Array, time: float = 0.0) -> tuple[Array, Array]:
@@ -76,7 +83,7 @@ class PlaneCase(Case):
 class StreamfunctionCase(PlaneCase):
     """A case on a plane whose flow does not diverge: its velocity on a mesh comes from the streamfunction at vertices.
 
-    A case must define `streamfunction` in addition; walls are streamlines, along which it vanishes.
+    A case must define `streamfunction` in addition.
     """
 
     @abstractmethod
@@ -84,7 +91,9 @@ class StreamfunctionCase(PlaneCase):
         """Streamfunction psi, m2/s, at `time` seconds; the velocity is k x grad(psi)."""
 
     def normal_velocity_on(self, mesh: VoronoiMesh, time: float) -> Array:
-        """Velocity at `time` along the normals of edges (n_edges,), m/s, that does not diverge, even at walls."""
-        streamfunction = self.evaluated(self.streamfunction, time)(*mesh.coordinates("vertex"))
-        streamfunction[mesh.vertices_on_edge[wall_edges(mesh)]] = 0.0
-        return normal_velocity_from_streamfunction(mesh, streamfunction)
+        """Velocity at `time` along the normals of edges (n_edges,), m/s, that does not diverge."""
+        return normal_velocity_from_streamfunction(mesh, self.streamfunction_on(mesh, time))
+
+    def streamfunction_on(self, mesh: VoronoiMesh, time: float) -> Array:
+        """Streamfunction at `time` at vertices (n_vertices,), m2/s."""
+        return self.evaluated(self.streamfunction, time)(*mesh.coordinates("vertex"))

@@ -14,6 +14,7 @@ from cases.munk import Place, evaluated, solution
 from cases.plane.base import StreamfunctionCase
 from cases.plane.lengths import require_periodic
 from mesh.arrays import Array
+from mesh.discrete.walls import wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.terms import Forcing
 from swe.errors import InputError
@@ -74,6 +75,19 @@ class GyreBox(StreamfunctionCase):
                     f"{self.name} is in a box from 0 to {axis}_length = {length:.10g} m in {axis}, but the mesh has "
                     f"cells from {centres.min():.6g} to {centres.max():.6g} m; set {axis}_length, or take another mesh"
                 )
+
+    def streamfunction_on(self, mesh: VoronoiMesh, time: float) -> Array:
+        """See `StreamfunctionCase`; the walls of the mesh are streamlines, where it vanishes.
+
+        They are the edges without a second cell, the centre of which would be outside the box. Other edges without one
+        are at the rim of what a process has of the mesh.
+        """
+        streamfunction = super().streamfunction_on(mesh, time)
+        edges = wall_edges(mesh)
+        beyond = 2.0 * mesh.edge_points[edges] - mesh.cell_points[mesh.cells_on_edge[edges].max(axis=1)]
+        outside = (beyond[:, :2] < 0.0) | (beyond[:, :2] > (self.x_length, self.y_length))
+        streamfunction[mesh.vertices_on_edge[edges[outside.any(axis=1)]]] = 0.0
+        return streamfunction
 
     def stress(self, x: Array, y: Array) -> Array:
         """Stress of the wind along x, N/m2."""

@@ -20,7 +20,7 @@ class DualVortex(StreamfunctionCase):
 
     They are depressions of the surface, dh exp(-(X^2 + Y^2) / 2) deep, whose arguments X = L / (pi s) sin(pi (x - x0) / L)
     are nearly those of Gaussians of standard deviation s, but periodic. Both centres stand `distance` of the lengths
-    from the middle, along x and along y. They turn about each other, and draw out filaments of potential vorticity.
+    from the middle, along x and along y. They turn about each other and move apart, and draw out filaments of potential vorticity.
     The flow stays the same when the plane is turned by half a turn about its middle.
     """
 
@@ -32,7 +32,7 @@ class DualVortex(StreamfunctionCase):
     recommended_days: ClassVar[float] = 10.0
 
     coriolis_parameter: float = parameter(6.147e-5, "1/s", "Coriolis parameter f0 at y = 0")
-    depth: float = parameter(750.0, "m", "Mean depth, but for rounding")
+    depth: float = parameter(750.0, "m", "Depth H, nearly the mean")
     vortex_depth: float = parameter(75.0, "m", "Depth dh of the depressions in the middle of the vortices")
     vortex_width: float = parameter(0.075, "", "Standard deviations s along x and y, in lengths of the plane")
     distance: float = parameter(0.1, "", "Distance of each centre from the middle along x and y, in lengths of the plane")
@@ -47,7 +47,7 @@ class DualVortex(StreamfunctionCase):
 
     @property
     def background_depth(self) -> float:
-        """The mean depth: norms are those of the departure from it."""
+        """The depth: norms are those of the departure from it."""
         return self.depth
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
@@ -55,7 +55,7 @@ class DualVortex(StreamfunctionCase):
         require_periods(self, mesh, x=self.x_length, y=self.y_length)
 
     def thickness(self, x: Array, y: Array, time: float = 0.0) -> Array:
-        """The depressions, and the mean depth raised by what they lack on the average."""
+        """The depth less the depressions, which are taken above their mean, or nearly so."""
         lacking = 4.0 * math.pi * self.vortex_width**2
         return self.depth - self.vortex_depth * (sum(vortex.shape for vortex in self._vortices(x, y)) - lacking)
 
