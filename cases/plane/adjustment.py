@@ -24,19 +24,19 @@ NEGLIGIBLE = 9.0
 class GeostrophicAdjustment(PlaneCase):
     """A fluid at rest whose surface has a step up at a quarter of x_length and a step down at three quarters.
 
-    Steps from -a to a, smoothed by a Gaussian of standard deviation `step_width`. A current in geostrophic balance stays
-    along each, over which the surface rises as 1 - exp(-|x| / R), with R = sqrt(g H) / f; waves carry the rest away.
-    Where steps are sharp and far apart, a third of the potential energy that is released stays in the currents. The
-    solution is the sum of the harmonics b sin(q x) of the surface at the start, each of which keeps the part
+    The surface is -a or a beside the steps, which a Gaussian of standard deviation `step_width` smooths. A current in
+    geostrophic balance stays along each, beside which the surface rises or falls as 1 - exp(-|x| / R), with
+    R = sqrt(g H) / f; waves carry the rest away. Where steps are sharp and far apart, a third of the potential energy
+    that is released stays in the currents.
+
+    The solution is the sum of the harmonics b sin(q x) of the surface at the start, each of which keeps the part
     G = 1 / (1 + (q R)^2) and oscillates with the rest at the frequency f / sqrt(G). It solves the linear equations; the
     others differ by terms of the square of a / H.
     """
 
     name: ClassVar[str] = "geostrophic-adjustment"
     title: ClassVar[str] = "Geostrophic adjustment of steps of the surface on a periodic f-plane"
-    reference: ClassVar[str] = (
-        "Gill (1976), J. Fluid Mech. 77, 603-621, https://doi.org/10.1017/S0022112076002280"
-    )
+    reference: ClassVar[str] = "Gill (1976), J. Fluid Mech. 77, 603-621, https://doi.org/10.1017/S0022112076002280"
     recommended_days: ClassVar[float] = 1.0
 
     depth: float = parameter(100.0, "m", "Depth H of the fluid at rest")

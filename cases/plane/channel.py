@@ -51,7 +51,7 @@ class KelvinChannel(PlaneCase):
 
     @property
     def phase_speed(self) -> float:
-        """c = sqrt(g H), m/s."""
+        """Of gravity waves, c = sqrt(g H), m/s."""
         return math.sqrt(self.gravity * self.depth)
 
     @property
@@ -76,7 +76,7 @@ class KelvinChannel(PlaneCase):
         return self.gravity / self.phase_speed * self._height(x, y, time), np.zeros(x.shape)
 
     def vorticity(self, x: Array, y: Array, time: float = 0.0) -> Array:
-        """f / H times the height: the wave leaves the potential vorticity uniform."""
+        """Of f / H times the height: the wave leaves the potential vorticity uniform."""
         return self.coriolis_parameter / self.depth * self._height(x, y, time)
 
     def _height(self, x: Array, y: Array, time: float) -> Array:

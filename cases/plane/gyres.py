@@ -157,7 +157,7 @@ class StommelBox(GyreBox):
 
     @property
     def _wave_number(self) -> float:
-        """k = pi / Ly, rad/m."""
+        """Wave number k = pi / Ly, rad/m."""
         return math.pi / self.y_length
 
     def _profile(self, x: Array) -> tuple[Array, Array]:
@@ -217,7 +217,8 @@ class MunkBox(GyreBox):
     def _derivative(self, along: int, across: int, x: Array, y: Array) -> Array:
         """That of the streamfunction, so many times in x and in y."""
         series = chebyshev.chebder(solution(self).streamfunction, along, 2.0 / self.x_length, axis=0)
-        return evaluated(chebyshev.chebder(series, across, 2.0 / self.y_length, axis=1), *self._scaled(x, y))
+        series = chebyshev.chebder(series, across, 2.0 / self.y_length, axis=1)
+        return evaluated(np.asarray(series, dtype=np.float64), *self._scaled(x, y))
 
     def _scaled(self, x: Array, y: Array) -> tuple[Array, Array]:
         """Positions in the box, from -1 to 1 in both directions."""

@@ -90,9 +90,7 @@ class Manufactured(PlaneCase):
         waves, (k, l), w = self._waves(x, y, time), self._wave_numbers, self._frequency  # noqa: E741
         (u, v), f = self.velocity(x, y, time), self.coriolis(x, y)
         pressure = -self.gravity * self.amplitude
-        along = self.speed * (
-            -w * (waves.cos_cos + waves.sin_sin) + u * k * waves.cos_cos - v * l * waves.sin_sin
-        )
+        along = self.speed * (-w * (waves.cos_cos + waves.sin_sin) + u * k * waves.cos_cos - v * l * waves.sin_sin)
         across = self.speed * (w * (waves.sin_cos - waves.cos_sin) - u * k * waves.sin_cos - v * l * waves.cos_sin)
         return along - f * v + pressure * k * waves.sin_cos, across + f * u + pressure * l * waves.cos_sin
 
@@ -109,7 +107,7 @@ class Manufactured(PlaneCase):
 
     @property
     def _wave_numbers(self) -> tuple[float, float]:
-        """k and l, rad/m."""
+        """Of the waves, k and l, rad/m."""
         return 2.0 * math.pi / self.x_length, 2.0 * math.pi / self.y_length
 
     @property

@@ -18,10 +18,11 @@ from swe.errors import InputError
 class DualVortex(StreamfunctionCase):
     """Two equal cyclones beside each other on a doubly periodic f-plane, in geostrophic balance at the start.
 
-    They are depressions of the surface, dh exp(-(X^2 + Y^2) / 2) deep, whose arguments X = L / (pi s) sin(pi (x - x0) / L)
-    are nearly those of Gaussians of standard deviation s, but periodic. Both centres stand `distance` of the lengths
-    from the middle, along x and along y. They turn about each other and move apart, and draw out filaments of potential vorticity.
-    The flow stays the same when the plane is turned by half a turn about its middle.
+    They are depressions of the surface, dh exp(-(X^2 + Y^2) / 2) deep. X = sin(pi (x - x0) / L) / (pi s), with the
+    length L of the plane, is nearly that of a Gaussian of standard deviation s L, but periodic; Y is the like. Both
+    centres stand `distance` of the lengths from the middle, along x and along y. The cyclones turn about each other and
+    move apart, and draw out filaments of potential vorticity. The flow stays the same when the plane is turned by half a
+    turn about its middle.
     """
 
     name: ClassVar[str] = "dual-vortex"
@@ -35,7 +36,9 @@ class DualVortex(StreamfunctionCase):
     depth: float = parameter(750.0, "m", "Depth H, nearly the mean")
     vortex_depth: float = parameter(75.0, "m", "Depth dh of the depressions in the middle of the vortices")
     vortex_width: float = parameter(0.075, "", "Standard deviations s along x and y, in lengths of the plane")
-    distance: float = parameter(0.1, "", "Distance of each centre from the middle along x and y, in lengths of the plane")
+    distance: float = parameter(
+        0.1, "", "Distance of each centre from the middle along x and y, in lengths of the plane"
+    )
     x_length: float = parameter(5e6, "m", "Length of the plane in x")
     y_length: float = parameter(2.5e6 * math.sqrt(3.0), "m", "Length of the plane in y")
 
@@ -57,7 +60,8 @@ class DualVortex(StreamfunctionCase):
     def thickness(self, x: Array, y: Array, time: float = 0.0) -> Array:
         """The depth less the depressions, which are taken above their mean, or nearly so."""
         lacking = 4.0 * math.pi * self.vortex_width**2
-        return self.depth - self.vortex_depth * (sum(vortex.shape for vortex in self._vortices(x, y)) - lacking)
+        shapes = np.sum([vortex.shape for vortex in self._vortices(x, y)], axis=0)
+        return np.asarray(self.depth - self.vortex_depth * (shapes - lacking))
 
     def streamfunction(self, x: Array, y: Array, time: float = 0.0) -> Array:
         """That of geostrophic flow, g (h - H) / f."""

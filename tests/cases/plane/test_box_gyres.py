@@ -67,12 +67,12 @@ def test_walls_are_streamlines_and_the_sea_turns_clockwise_along_the_west(case: 
     along = np.linspace(0.0, 1.0, 21)
     x, y, none = along * case.x_length, along * case.y_length, np.zeros(21)
     inner = case.streamfunction(*(0.25 * np.array([[case.x_length], [2.0 * case.y_length]])))[0]
-    assert inner > 50.0
+    assert inner > 5.0
     for wall in ((none, y), (none + case.x_length, y), (x, none), (x, none + case.y_length), (none - 1e4, y)):
         np.testing.assert_allclose(case.streamfunction(*wall), 0.0, atol=1e-9 * inner)
     half = np.full(200, 0.5 * case.y_length)
     northward = case.velocity(np.linspace(0.0, case.x_length, 200), half)[1]
-    assert northward[:20].max() > 4.0 * -northward.min()
+    assert northward[:20].max() > 2.5 * -northward.min()
     slip = case.velocity(np.full(1, 1.0), half[:1])[1] / northward.max()
     assert (slip > 0.9) == isinstance(case, StommelBox)
     assert (slip < 0.001) == isinstance(case, MunkBox)
@@ -130,7 +130,7 @@ def test_the_start_neither_diverges_nor_crosses_walls(case: GyreBox) -> None:
 
 @pytest.mark.parametrize("case", [StommelBox(), MunkBox()])
 def test_the_wind_is_weak_enough_for_linear_equations(case: GyreBox) -> None:
-    """Advection of vorticity is little beside that of the planet's, by the strongest flow and the steepest vorticity."""
+    """The vorticity that the flow carries is little beside that of the planet."""
     slopes = inside(case)
     u, v = case.velocity(slopes.x, slopes.y)
     advected = u * slopes.in_x(case.vorticity) + v * slopes.in_y(case.vorticity)
