@@ -79,7 +79,7 @@ class GeostrophicAdjustment(PlaneCase):
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
         """See `PlaneCase`; the mesh must repeat itself in both directions, in x after whole lengths of the case."""
-        require_periodic(self, mesh, "xy")
+        require_periodic(self, mesh)
         require_periods(self, mesh, x=self.x_length)
 
     def thickness(self, x: Array, y: Array, time: float = 0.0) -> Array:

@@ -28,6 +28,9 @@ class PlaneCase(Case):
 
     _bounded: ClassVar[tuple[str, ...]] = ("gravity",)
 
+    periodic: ClassVar[str] = "xy"
+    """Directions in which the plane of the case repeats itself: "xy", "x" or "none"."""
+
     radius: float = field(default=0.0, init=False)
     rotation_rate: float = field(default=0.0, init=False)
     coriolis_parameter: float = parameter(1e-4, "1/s", "Coriolis parameter f0 at y = 0")

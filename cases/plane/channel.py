@@ -28,6 +28,7 @@ class KelvinChannel(PlaneCase):
     reference: ClassVar[str] = (
         "Thomson (1880), Proc. R. Soc. Edinburgh 10, 92-100, https://doi.org/10.1017/S0370164600043467"
     )
+    periodic: ClassVar[str] = "x"
     recommended_days: ClassVar[float] = 5.0
 
     depth: float = parameter(40.0, "m", "Depth H of the fluid at rest")
@@ -61,7 +62,7 @@ class KelvinChannel(PlaneCase):
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
         """See `PlaneCase`; the mesh must be a channel along x, above y = 0, that holds whole waves."""
-        require_periodic(self, mesh, "x")
+        require_periodic(self, mesh)
         require_periods(self, mesh, x=self.x_length)
         lowest = float(mesh.y_cell.min())
         if lowest < 0.0:

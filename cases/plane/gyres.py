@@ -30,6 +30,8 @@ class GyreBox(StreamfunctionCase):
     The wind is so weak that the equations are linear to some parts in 1000.
     """
 
+    periodic: ClassVar[str] = "none"
+
     beta: float = parameter(2e-11, "1/(m s)", "Change of the Coriolis parameter with y")
     depth: float = parameter(100.0, "m", "Depth of the fluid at rest")
     wind_stress: float = parameter(1e-5, "N/m2", "Largest stress tau of the wind")
@@ -67,7 +69,7 @@ class GyreBox(StreamfunctionCase):
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
         """See `PlaneCase`; the mesh must be that of the box, between four walls."""
-        require_periodic(self, mesh, "none")
+        require_periodic(self, mesh)
         for axis, length in (("x", self.x_length), ("y", self.y_length)):
             centres = getattr(mesh, f"{axis}_cell")
             if centres.min() < 0.0 or centres.max() > length:

@@ -8,12 +8,12 @@ FIT = 1e-6
 """Relative difference by which a period of the mesh may miss whole lengths of the case."""
 
 
-def require_periodic(case: PlaneCase, mesh: VoronoiMesh, periodic: str) -> None:
-    """Raise `InputError` unless the plane is periodic in "xy", in "x", or in no direction, "none"."""
+def require_periodic(case: PlaneCase, mesh: VoronoiMesh) -> None:
+    """Raise `InputError` unless the plane is periodic in the directions of the case, and in no other."""
     found = "".join(axis for axis in "xy" if getattr(mesh, f"{axis}_period") > 0.0) or "none"
-    if found != periodic:
+    if found != case.periodic:
         raise InputError(
-            f"{case.name} needs a mesh on a plane with --periodic {periodic}, and this one has --periodic {found}; "
+            f"{case.name} needs a mesh on a plane with --periodic {case.periodic}, and this one has --periodic {found}; "
             "take another mesh (trisk mesh --plane)"
         )
 

@@ -21,8 +21,8 @@ class DualVortex(StreamfunctionCase):
     They are depressions of the surface, dh exp(-(X^2 + Y^2) / 2) deep. X = sin(pi (x - x0) / L) / (pi s), with the
     length L of the plane, is nearly that of a Gaussian of standard deviation s L, but periodic; Y is the like. Both
     centres stand `distance` of the lengths from the middle, along x and along y. The cyclones turn about each other and
-    move apart, and draw out filaments of potential vorticity. The flow stays the same when the plane is turned by half a
-    turn about its middle.
+    move apart, and draw out filaments of potential vorticity. The flow stays the same when the plane is turned by half
+    a turn about its middle.
     """
 
     name: ClassVar[str] = "dual-vortex"

@@ -51,9 +51,8 @@ def test_every_case_shows_its_parameters_and_no_sphere(name: str) -> None:
 
 def plane_of(name: str) -> VoronoiMesh:
     """The plane that a case asks for by default, of 8 by 8 hexagons."""
-    length = getattr(PLANE_CASES[name](), "x_length")  # noqa: B009
-    periodic = {"kelvin-channel": "x", "stommel-box": "none", "munk-box": "none"}.get(name, "xy")
-    return hexagon_mesh((length, 0.5 * np.sqrt(3.0) * length), (8, 8), periodic)
+    length = PLANE_CASES[name]().parameters()["x_length"]
+    return hexagon_mesh((length, 0.5 * np.sqrt(3.0) * length), (8, 8), PLANE_CASES[name].periodic)
 
 
 @pytest.mark.parametrize("name", PLANE_CASES)
