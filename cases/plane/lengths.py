@@ -13,8 +13,8 @@ def require_periodic(case: PlaneCase, mesh: VoronoiMesh) -> None:
     found = "".join(axis for axis in "xy" if getattr(mesh, f"{axis}_period") > 0.0) or "none"
     if found != case.periodic:
         raise InputError(
-            f"{case.name} needs a mesh on a plane with --periodic {case.periodic}, and this one has --periodic {found}; "
-            "take another mesh (trisk mesh --plane)"
+            f"{case.name} needs a mesh on a plane with --periodic {case.periodic}, and this one has --periodic "
+            f"{found}; take another mesh (trisk mesh --plane)"
         )
 
 
