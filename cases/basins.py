@@ -11,9 +11,10 @@ from scipy.special import lpmv
 
 from cases.base import Case, parameter
 from cases.differences import gradient
-from mesh.arrays import Array
+from mesh.arrays import Array, Index
 from mesh.discrete.operators import normal_component, normal_velocity_from_streamfunction
 from mesh.discrete.walls import wall_edges
+from mesh.geometry.sphere import dot, to_lonlat
 from mesh.integrals.quadrature import Sampling
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
@@ -68,8 +69,19 @@ class Basin(Case):
     def normal_velocity_on(self, mesh: VoronoiMesh, time: float) -> Array:
         """Velocity at `time` along the normals of edges (n_edges,), m/s, that does not diverge, even at the coast."""
         streamfunction = self.evaluated(self.streamfunction, time)(mesh.lon_vertex, mesh.lat_vertex)
-        streamfunction[mesh.vertices_on_edge[wall_edges(mesh)]] = 0.0
+        streamfunction[mesh.vertices_on_edge[self._coast(mesh)]] = 0.0
         return normal_velocity_from_streamfunction(mesh, streamfunction)
+
+    def _coast(self, mesh: VoronoiMesh) -> Index:
+        """Edges at the coast: those without a second cell, the centre of which would be outside the sea.
+
+        Other edges without one are at the rim of what a process has of the mesh.
+        """
+        edges = wall_edges(mesh)
+        middles, centres = mesh.edge_points[edges], mesh.cell_points[mesh.cells_on_edge[edges].max(axis=1)]
+        mirror = 2.0 * dot(middles, centres) / dot(middles, middles)
+        longitude, latitude = to_lonlat(mirror[:, None] * middles - centres)
+        return edges[self.is_outside(longitude, latitude)]
 
 
 @dataclass(frozen=True)

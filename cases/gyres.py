@@ -149,15 +149,26 @@ class Stommel(Gyre):
 
     def _profile(self, x: Array) -> tuple[Array, Array]:
         """X(x) of the streamfunction X sin(pi s), m2/s, and its derivative, at longitudes from the western coast."""
-        r, beta, k = self.drag_rate, 2.0 * self.rotation_rate, math.pi / self.height
-        root = math.sqrt(beta**2 + 4.0 * (r * k) ** 2)
-        slow, fast = (root - beta) / (2.0 * r), (root + beta) / (2.0 * r)
-        # A exp(slow (x - width)) + B exp(-fast x) is 1 at both coasts, and neither part overflows.
-        over, back = math.exp(-slow * self.width), math.exp(-fast * self.width)
-        from_east, from_west = (1.0 - back) / (1.0 - over * back), (1.0 - over) / (1.0 - over * back)
-        east, west = from_east * np.exp(slow * (x - self.width)), from_west * np.exp(-fast * x)
-        size = self.driving / (r * k)
-        return size * (1.0 - east - west), size * (fast * west - slow * east)
+        beta, wave_number = 2.0 * self.rotation_rate, math.pi / self.height
+        return stommel_profile(x, self.width, wave_number, beta, self.drag_rate, self.driving)
+
+
+def stommel_profile(
+    x: Array, width: float, wave_number: float, beta: float, drag_rate: float, driving: float
+) -> tuple[Array, Array]:
+    """X(x) of Stommel's streamfunction X sin(k y), and its derivative, at distances `x` from the western coast.
+
+    It solves r (X'' - k^2 X) + beta X' = -k T and vanishes at both coasts, `width` apart; T is the `driving`.
+    """
+    r, k = drag_rate, wave_number
+    root = math.sqrt(beta**2 + 4.0 * (r * k) ** 2)
+    slow, fast = (root - beta) / (2.0 * r), (root + beta) / (2.0 * r)
+    # A exp(slow (x - width)) + B exp(-fast x) is 1 at both coasts, and neither part overflows.
+    over, back = math.exp(-slow * width), math.exp(-fast * width)
+    from_east, from_west = (1.0 - back) / (1.0 - over * back), (1.0 - over) / (1.0 - over * back)
+    east, west = from_east * np.exp(slow * (x - width)), from_west * np.exp(-fast * x)
+    size = driving / (r * k)
+    return size * (1.0 - east - west), size * (fast * west - slow * east)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -27,6 +27,45 @@ class Series:
 
     streamfunction: Array
     pressure: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Place:
+    """What depends on latitude in the equation, at nodes (n, 1).
+
+    s = 1 / (a cos(lat))^2, 1/m2, its two derivatives in y, and df/dy, 1/s. On a plane, with x and y in metres, s is 1.
+    """
+
+    s: Array
+    slope: Array
+    bend: Array
+    beta: Array
+
+
+class MunkSea(Protocol):
+    """What the solution asks for: a closed sea, on the sphere or on a plane, in the coordinates of its equation."""
+
+    @property
+    def width(self) -> float:
+        """Of the sea in x."""
+
+    @property
+    def height(self) -> float:
+        """Of the sea in y."""
+
+    @property
+    def driving(self) -> float:
+        """T, where the wind is -T cos(pi s) along x, s from 0 in the south to 1 in the north."""
+
+    @property
+    def viscosity(self) -> float:
+        """A, m2/s."""
+
+    def place(self, nodes: Array) -> Place:
+        """What depends on latitude at `nodes` (n,), from -1 in the south to 1 in the north."""
+
+    def __hash__(self) -> int:
+        """Solutions are kept by the parameters of the sea."""
 
 
 @dataclass(frozen=True)
@@ -71,6 +110,17 @@ class Munk(Gyre):
         x, y = self.in_box(longitude, latitude)
         return 2.0 * x / self.width - 1.0, 2.0 * y / self.height - 1.0
 
+    def place(self, nodes: Array) -> Place:
+        """See `MunkSea`."""
+        y = mercator(np.array(self.south)) + 0.5 * (nodes[:, None] + 1.0) * self.height
+        area = self.radius**2
+        return Place(
+            np.cosh(y) ** 2 / area,
+            np.sinh(2.0 * y) / area,
+            2.0 * np.cosh(2.0 * y) / area,
+            2.0 * self.rotation_rate / np.cosh(y) ** 2,
+        )
+
 
 def evaluated(series: Array, x: Array, y: Array) -> Array:
     """Values of a series of coefficients (n, m) at positions from -1 to 1."""
@@ -78,14 +128,14 @@ def evaluated(series: Array, x: Array, y: Array) -> Array:
 
 
 @lru_cache(maxsize=8)
-def solution(case: Munk, terms: int = TERMS) -> Series:
+def solution(case: MunkSea, terms: int = TERMS) -> Series:
     """The steady flow of a case, by collocation: psi is (1 - x^2)^2 (1 - y^2)^2 times a polynomial."""
     nodes = chebyshev.chebpts1(terms)
     along, across = 2.0 / case.width, 2.0 / case.height
     basis = clamped(terms)
     x = [along**order * chebyshev.chebval(nodes, chebyshev.chebder(basis, order)).T for order in range(5)]
     y = [across**order * chebyshev.chebval(nodes, chebyshev.chebder(basis, order)).T for order in range(5)]
-    place = Place.at(case, nodes)
+    place = case.place(nodes)
     # The Laplacian of s lap(psi), with s = 1 / (a cos(lat))^2, a function of y.
     viscous = (
         np.kron(x[4], place.s * y[0])
@@ -99,31 +149,6 @@ def solution(case: Munk, terms: int = TERMS) -> Series:
     return Series(streamfunction, pressure_series(case, streamfunction))
 
 
-@dataclass(frozen=True, eq=False)
-class Place:
-    """What depends on latitude in the equation, at nodes (n, 1).
-
-    s = 1 / (a cos(lat))^2, 1/m2, its two derivatives in y, and df/dy, 1/s.
-    """
-
-    s: Array
-    slope: Array
-    bend: Array
-    beta: Array
-
-    @classmethod
-    def at(cls, case: Munk, nodes: Array) -> "Place":
-        """At `nodes` (n,) between -1 and 1."""
-        y = mercator(np.array(case.south)) + 0.5 * (nodes[:, None] + 1.0) * case.height
-        area = case.radius**2
-        return cls(
-            np.cosh(y) ** 2 / area,
-            np.sinh(2.0 * y) / area,
-            2.0 * np.cosh(2.0 * y) / area,
-            2.0 * case.rotation_rate / np.cosh(y) ** 2,
-        )
-
-
 def clamped(terms: int) -> Array:
     """Coefficients (terms + 4, terms) of (1 - x^2)^2 times each Chebyshev polynomial: zero at the ends, with slope."""
     square = np.array([3.0, 0.0, -4.0, 0.0, 1.0]) / 8.0
@@ -131,7 +156,7 @@ def clamped(terms: int) -> Array:
     return np.stack([np.pad(column, (0, terms + 4 - len(column))) for column in columns], axis=1)
 
 
-def pressure_series(case: Munk, streamfunction: Array) -> Array:
+def pressure_series(case: MunkSea, streamfunction: Array) -> Array:
     """Coefficients of W = g eta - f psi, m2/s2, from those of psi.
 
     dW/dlon is the wind less A dzeta/dy, and dW/dy is A dzeta/dlon - psi df/dy: from the middle of the sea to the north
@@ -139,7 +164,7 @@ def pressure_series(case: Munk, streamfunction: Array) -> Array:
     """
     nodes = chebyshev.chebpts1(len(streamfunction))
     along, across = 2.0 / case.width, 2.0 / case.height
-    place = Place.at(case, nodes)
+    place = case.place(nodes)
 
     def at(x: Array, dx: int, dy: int) -> Array:
         """Derivative of psi at `x` (k,) and the nodes in y, (n, k)."""

@@ -24,9 +24,10 @@ _PLACES = {
         *("Simulation", "State", "ThicknessRelaxation", "Viscosity", "WindStress"),
     ),
     "cases": (
-        *("CASES", "Case", "DoubleGyre", "Galewsky", "Hollingsworth", "InertiaGravityWave", "KelvinWave", "LakeAtRest"),
-        *("Munk", "PLANE_CASES", "PlaneCase", "Seiche"),
-        *("Stommel", "Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
+        *("CASES", "Case", "DoubleGyre", "DualVortex", "Galewsky", "GeostrophicAdjustment", "Hollingsworth"),
+        *("InertiaGravityWave", "KelvinChannel", "KelvinWave", "LakeAtRest", "Manufactured", "Munk", "MunkBox"),
+        *("PLANE_CASES", "PlaneCase", "Seiche", "Stommel", "StommelBox"),
+        *("Williamson1", "Williamson2", "Williamson5", "Williamson6", "find_case", "parameter"),
     ),
     "postprocess": ("compare_runs", "open_run", "plot_field"),
 }

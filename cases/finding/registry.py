@@ -11,7 +11,12 @@ from cases.hollingsworth import Hollingsworth
 from cases.lake_at_rest import LakeAtRest
 from cases.munk import Munk
 from cases.parameters import Value, with_parameters
+from cases.plane.adjustment import GeostrophicAdjustment
 from cases.plane.base import PlaneCase
+from cases.plane.channel import KelvinChannel
+from cases.plane.gyres import MunkBox, StommelBox
+from cases.plane.manufactured import Manufactured
+from cases.plane.vortices import DualVortex
 from cases.plane.waves import InertiaGravityWave
 from cases.williamson import Williamson1, Williamson2, Williamson5, Williamson6
 from swe.errors import InputError
@@ -25,7 +30,13 @@ CASES: dict[str, type[Case]] = {
 }
 
 
-PLANE_CASES: dict[str, type[PlaneCase]] = {case.name: case for case in (InertiaGravityWave,)}
+PLANE_CASES: dict[str, type[PlaneCase]] = {
+    case.name: case
+    for case in (
+        *(InertiaGravityWave, Manufactured, GeostrophicAdjustment, DualVortex),
+        *(StommelBox, MunkBox, KelvinChannel),
+    )
+}
 """The cases on planes."""
 
 

@@ -8,13 +8,11 @@ import numpy as np
 
 from cases.base import parameter
 from cases.plane.base import PlaneCase
+from cases.plane.lengths import require_periods
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError
-
-FIT = 1e-6
-"""Relative difference by which a period of the mesh may miss whole lengths of the case."""
 
 
 @dataclass(frozen=True)
@@ -75,13 +73,7 @@ class InertiaGravityWave(PlaneCase):
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
         """See `PlaneCase`; the mesh must repeat itself after whole lengths of the case."""
-        for axis, period, length in (("x", mesh.x_period, self.x_length), ("y", mesh.y_period, self.y_length)):
-            lengths = period / length
-            if not (lengths > 0.5 and abs(lengths - round(lengths)) <= FIT * lengths):
-                raise InputError(
-                    f"{self.name} repeats itself after {axis}_length = {length:.10g} m, but the mesh after "
-                    f"{period:.10g} m in {axis} (0 for a wall); set {axis}_length, or take another mesh"
-                )
+        require_periods(self, mesh, x=self.x_length, y=self.y_length)
 
     def thickness(self, x: Array, y: Array, time: float = 0.0) -> Array:
         """The depth and the wave."""

@@ -11,6 +11,7 @@ from mesh import VoronoiMesh, build_operators, scvt_mesh
 from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
 from mesh.parts.cutting import without_cells
+from mesh.parts.mesh_part import cut_part
 from swe import InputError, Simulation
 from swe.forcing.wind import SEA_WATER
 
@@ -152,3 +153,16 @@ def test_the_stress_of_the_double_gyre() -> None:
     expected = [-0.1, -0.1, 0.0, 0.1, 0.0, -0.1, -0.1]
     np.testing.assert_allclose(case.stress(np.zeros(7), latitude), expected, atol=1e-15)
     assert isinstance(case, Case)
+
+
+@pytest.mark.parametrize("case", [Stommel(), Munk()])
+def test_a_process_starts_its_part_as_the_whole(fine_mesh: VoronoiMesh, case: Gyre) -> None:
+    """Also at the edges of its rim, beyond which cells are missing that are no coast."""
+    mesh = basin_of(fine_mesh, case).scaled(case.radius)
+    whole, blocks = case.state_on(mesh), (mesh.lon_cell > 0.5).astype(np.int32)
+    for block in (0, 1):
+        part = cut_part(mesh, blocks, block, 2)
+        assert part.mesh.n_cells < mesh.n_cells
+        inner = part.mesh.cells_on_edge.min(axis=1) >= 0
+        mine = case.state_on(part.mesh).normal_velocity
+        np.testing.assert_array_equal(mine[inner], whole.normal_velocity[part.edges][inner])
