@@ -11,7 +11,7 @@ from mesh.coast.coastline import Coastline
 from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.coast.sea_mesh import sea_mesh
-from mesh.coast.short_edges import without_short_edges
+from mesh.coast.short_edges import Part, without_short_edges
 from mesh.coast.start import FEWEST_CELLS, fillers, sea_spacing, starting_points
 from mesh.density.named import Density, uniform
 from mesh.errors import MeshError
@@ -66,8 +66,10 @@ def region_mesh(
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
 
-    def converge_again(points: Array, tolerance: float) -> SeaResult:
+    def converge_again(points: Array, tolerance: float, part: Part | None = None) -> SeaResult:
         left = replace(limits.since(begin), tolerance=tolerance)
+        if part is not None:
+            return converge_part(coastline, points, part, density, left)
         return converge_at_sea(coastline, points, density=density, limits=left, callback=callback)
 
     found = without_short_edges(found, converge_again, limits.tolerance, request.seed)
@@ -128,3 +130,14 @@ def converge_at_sea(
     weight = None if density is uniform else density
     optimizer = Optimizer(points, method=method, density=weight, cells=sea, spacing=spacing)
     return SeaResult(optimizer.run(limits, callback), sea)
+
+
+def converge_part(
+    coastline: Coastline, points: Array, part: Part, density: Density = uniform, limits: Limits | None = None
+) -> SeaResult:
+    """As `converge_at_sea` for the generators (k, 3) of a part of a sea, some of which are held."""
+    limits = Limits(tolerance=VARIABLE_TOLERANCE) if limits is None else limits
+    sea = SeaCells(points, coastline, part.fillers)
+    weight = None if density is uniform else density
+    optimizer = Optimizer(points, density=weight, fixed=part.held, cells=sea, spacing=part.spacing)
+    return SeaResult(optimizer.run(limits), sea)
