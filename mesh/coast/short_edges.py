@@ -5,8 +5,9 @@ and the mesh is still a local minimum of the energy: smaller displacements lead 
 rings of such an edge are displaced at random by half a spacing, and converged again, loosely, together with those of
 some more rings, while all others are held. What moves about an edge is a patch; patches that do not touch are tried all
 at once, in one descent on their cells and a few held ones round them, and are taken or refused one by one. So a try
-costs what its patches cost, not the sea. When no edge is short, or tries are used up, the whole sea is converged to its
-tolerance. Cells far from patches hardly move, and the result is as centroidal as any other.
+costs what its patches cost, not the sea. When no edge is short, or tries are used up, cells whose residual is too large
+now, mostly just outside of patches, are converged with those near them in the same way, and at last the whole sea is, to
+its tolerance. Cells far from patches hardly move, and the result is as centroidal as any other.
 """
 
 import warnings
@@ -32,7 +33,7 @@ INNER_EDGE, COASTAL_EDGE = 0.12, 0.32
 LOOSE_TOLERANCE = 1e-4
 """Residual, in mean spacings, at which lengths of edges are known to some thousandths of a spacing."""
 
-ATTEMPTS = 3
+ATTEMPTS = 6
 """How often the whole sea is converged to its tolerance again."""
 
 SHAKES = 12
@@ -41,7 +42,7 @@ SHAKES = 12
 SHAKEN_RINGS = 2
 """Rings of cells, around those of a short edge, that are displaced: fewer mostly fall back to where they were."""
 
-MOVING_RINGS = 10
+MOVING_RINGS = 8
 """Rings of cells, around those of a short edge, that converge again."""
 
 HELD_RINGS = 2
@@ -52,6 +53,12 @@ AROUND_RINGS = 3
 
 ELSEWHERE = 1000
 """Generators of the rest of the sea, about, that are kept to surround the sphere."""
+
+SETTLED_RINGS = 10
+"""Rings of cells, around those whose residual is too large, that converge again after patches were mended."""
+
+SETTLINGS = 4
+"""How often, in an attempt, such cells are sought: half a dozen cells are left after the first time, or none."""
 
 AMPLITUDE = 0.5
 """Standard deviation of displacements in each direction, in local spacings."""
@@ -75,11 +82,17 @@ class Part:
     patches: Index
 
 
-class Converge(Protocol):
-    """Converges points (n, 3) of the sea, or of a `part` of it, to a tolerance in mean spacings."""
+class Descent(Protocol):
+    """Converges generators at sea; tolerances and residuals are in mean spacings. All raise `MeshError`."""
 
-    def __call__(self, points: Array, tolerance: float, part: Part | None = None) -> SeaResult:
-        """The converged generators and their cells."""
+    def whole(self, points: Array, tolerance: float) -> SeaResult:
+        """What all generators (n, 3) converge to."""
+
+    def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
+        """What the generators (k, 3) of a part converge to."""
+
+    def residuals(self, points: Array) -> Array:
+        """Distances (n,) of all generators (n, 3) from the centroids of their cells."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,24 +145,25 @@ def _lengths_between(corners: Corners, sea: SeaCells, points: Array) -> SideLeng
     return SideLengths(corners.cells, lengths / (0.5 * (own + other)), at_coast, spacings)
 
 
-def without_short_edges(found: SeaResult, converge: Converge, tolerance: float, seed: int = DEFAULT_SEED) -> SeaResult:
+def without_short_edges(found: SeaResult, descent: Descent, tolerance: float, seed: int = DEFAULT_SEED) -> SeaResult:
     """The converged mesh that was `found`, or one near it without short edges, or with fewer.
 
-    It is as centroidal, or to the `tolerance`, in mean spacings, and depends on the `seed` only, unless `converge` runs
+    It is as centroidal, or to the `tolerance`, in mean spacings, and depends on the `seed` only, unless `descent` runs
     out of time. Warns with `MeshWarning`, which tells the shortest edges, where some are left. Raises `MeshError` as
     `corners_of` does for the mesh that was found.
     """
     generator = np.random.default_rng(seed)
     allowed = max(tolerance, found.result.history.residual[-1])
+    loose = max(allowed, LOOSE_TOLERANCE)
     best, lengths = found, side_lengths(found.sea, found.result.points)
     for _ in range(ATTEMPTS):
         if lengths.lacking == 0.0:
             break
-        points = mended_points(best, lengths, converge, max(allowed, LOOSE_TOLERANCE), generator)
+        points = mended_points(best, lengths, descent, loose, generator)
         if points is None:
             continue
         try:
-            tried = converge(points, tolerance)
+            tried = descent.whole(_settled(best.sea, points, descent, loose), tolerance)
             of_tried = side_lengths(tried.sea, tried.result.points)
         except MeshError:  # cells may end in several parts, or with two sides
             continue
@@ -163,7 +177,7 @@ def without_short_edges(found: SeaResult, converge: Converge, tolerance: float, 
 
 
 def mended_points(
-    found: SeaResult, lengths: SideLengths, converge: Converge, tolerance: float, generator: np.random.Generator
+    found: SeaResult, lengths: SideLengths, descent: Descent, tolerance: float, generator: np.random.Generator
 ) -> Array | None:
     """Generators (n, 3) that differ from those `found` in patches about short edges, where they lack less.
 
@@ -179,7 +193,7 @@ def mended_points(
         open_cells = (patches != NO_PATCH) & (lacking[patches] > 0.0)
         part = _part_of(sea, points, moving & open_cells, np.where(open_cells, patches, NO_PATCH))
         try:
-            tried = converge(_shaken(sea, points[part.cells], part, generator), tolerance, part)
+            tried = descent.part(_shaken(sea, points[part.cells], part, generator), tolerance, part)
         except MeshError:  # displaced generators may coincide
             continue
         left = _lacking_in(part, tried, len(lacking))
@@ -188,6 +202,22 @@ def mended_points(
         points[part.cells[taken]] = tried.result.points[taken]
         lacking, bettered = np.where(better, left, lacking), bettered | better
     return points if bettered.any() else None
+
+
+def _settled(sea: SeaCells, points: Array, descent: Descent, tolerance: float) -> Array:
+    """Points (n, 3) of a sea whose residuals are, or nearly are, at most the `tolerance`, from such as have few above.
+
+    Half of it is aimed at, so that what is held does not exceed it for what moves beside it.
+    """
+    for _ in range(SETTLINGS):
+        residuals = descent.residuals(points)
+        if residuals.max() <= tolerance:
+            break
+        moving = _widened(sea, residuals > 0.5 * tolerance, SETTLED_RINGS)
+        part = _part_of(sea, points, moving, np.full(sea.n_cells, NO_PATCH))
+        points = points.copy()
+        points[part.cells] = descent.part(points[part.cells], 0.5 * tolerance, part).result.points
+    return points
 
 
 def _patches_about(sea: SeaCells, lengths: SideLengths) -> tuple[NDArray[np.bool_], Index]:
