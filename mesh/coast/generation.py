@@ -148,9 +148,7 @@ class SeaDescent:
     def whole(self, points: Array, tolerance: float) -> SeaResult:
         """What all generators (n, 3) converge to."""
         limits = replace(self.limits.since(self.begin), tolerance=tolerance)
-        return converge_at_sea(
-            self.coastline, points, density=self.density, limits=limits, callback=self.callback
-        )
+        return converge_at_sea(self.coastline, points, density=self.density, limits=limits, callback=self.callback)
 
     def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
         """What the generators (k, 3) of a part converge to, in `PART_ITERATIONS` at most."""
@@ -167,9 +165,7 @@ class SeaDescent:
         """Distances (n,) of all generators (n, 3) from the centroids of their cells, in mean spacings."""
         spacing = sea_spacing(self.coastline, len(points))
         sea = SeaCells(points, self.coastline, fillers(self.coastline, spacing))
-        sums = WeightedCells(self.density, len(points)).integrate(
-            points, sea.circumcenters, sea.ring_starts, sea.rings
-        )
+        sums = WeightedCells(self.density, len(points)).integrate(points, sea.circumcenters, sea.ring_starts, sea.rings)
         return centroid_distances(sums) / spacing
 
     @property

@@ -6,8 +6,8 @@ rings of such an edge are displaced at random by half a spacing, and converged a
 some more rings, while all others are held. What moves about an edge is a patch; patches that do not touch are tried all
 at once, in one descent on their cells and a few held ones round them, and are taken or refused one by one. So a try
 costs what its patches cost, not the sea. When no edge is short, or tries are used up, cells whose residual is too large
-now, mostly just outside of patches, are converged with those near them in the same way, and at last the whole sea is, to
-its tolerance. Cells far from patches hardly move, and the result is as centroidal as any other.
+now, mostly just outside of patches, are converged in the same way, with those near them, and at last the whole sea is,
+to its tolerance. Cells far from patches hardly move, and the result is as centroidal as any other.
 """
 
 import warnings
@@ -57,8 +57,8 @@ ELSEWHERE = 1000
 SETTLED_RINGS = 10
 """Rings of cells, around those whose residual is too large, that converge again after patches were mended."""
 
-SETTLINGS = 4
-"""How often, in an attempt, such cells are sought: half a dozen cells are left after the first time, or none."""
+SETTLINGS = 10
+"""How often, in an attempt, such cells are sought: mostly one to four times find all."""
 
 AMPLITUDE = 0.5
 """Standard deviation of displacements in each direction, in local spacings."""
@@ -213,7 +213,7 @@ def _settled(sea: SeaCells, points: Array, descent: Descent, tolerance: float) -
         residuals = descent.residuals(points)
         if residuals.max() <= tolerance:
             break
-        moving = _widened(sea, residuals > 0.5 * tolerance, SETTLED_RINGS)
+        moving = _widened(sea, residuals > tolerance, SETTLED_RINGS)
         part = _part_of(sea, points, moving, np.full(sea.n_cells, NO_PATCH))
         points = points.copy()
         points[part.cells] = descent.part(points[part.cells], 0.5 * tolerance, part).result.points
