@@ -146,18 +146,21 @@ def wide() -> Coastline:
 
 @pytest.fixture(scope="module")
 def found_in_wide(wide: Coastline) -> SeaResult:
-    """A sea of 50 cells from side to side; the shortest edge has 0.08 spacings, the next one, far from it, 0.197."""
-    return converged(wide, WIDE, LOOSE)
+    """A sea of 50 cells from side to side, more centroidal than will be asked: edges of 0.191 and 0.200 far apart, then 0.204."""
+    return converged(wide, WIDE, 0.01 * LOOSE)
 
 
-def test_cells_far_from_a_short_edge_stay_where_they_are(wide: Coastline, found_in_wide: SeaResult) -> None:
+def test_cells_far_from_a_short_edge_stay_where_they_are(
+    monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
+) -> None:
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.195)
     before, points = lengths_of(found_in_wide), found_in_wide.result.points
     better = without_short_edges(found_in_wide, descent_of(wide), LOOSE)
     assert lengths_of(better).lacking == 0.0
     assert better.result.history.residual[-1] <= LOOSE
     short = points[before.cells[np.argmin(before.lengths)]]
-    far = arc_length(points, short) > 26.0 * before.spacings.mean()
-    assert np.count_nonzero(far) > 0.4 * WIDE
+    far = arc_length(points, short) > 22.0 * before.spacings.mean()
+    assert np.count_nonzero(far) > 0.5 * WIDE
     assert (better.result.points[far] == points[far]).all()
 
 
@@ -177,7 +180,7 @@ class Spoiling(SeaDescent):
 def test_patches_are_taken_one_by_one(
     monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
 ) -> None:
-    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.2)
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.202)
     lengths, points = lengths_of(found_in_wide), found_in_wide.result.points
     descent = Spoiling(wide, uniform, Limits(LOOSE), time.perf_counter())
     mended = mended_points(found_in_wide, lengths, descent, LOOSE, np.random.default_rng(0))
