@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Index
 from mesh.coast.crossings import neighbour_across
@@ -59,6 +60,29 @@ def corners_of(sea: SeaCells) -> Corners:
     return corners
 
 
+def corners_and_faults(sea: SeaCells) -> tuple[Corners, NDArray[np.bool_]]:
+    """The corners of all cells, and which cells (n_cells,) are none that `corners_of` would allow, beside fillers also.
+
+    The corners of those are of no use.
+    """
+    corners = _all_corners(sea)
+    faulty = (sea.loops > 1) | (np.diff(corners.starts) < FEWEST_SIDES)
+    faulty[corners.cells[corners.neighbours >= sea.n_cells]] = True
+    pairs, counts = _pairs_of_cells(corners, sea.n_cells)
+    faulty[pairs[counts > 1] // sea.n_cells] = True
+    return corners, faulty
+
+
+def _all_corners(sea: SeaCells) -> Corners:
+    """The corners of all cells, sound or not."""
+    starts = np.empty(sea.n_cells + 1, np.int32)
+    places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
+    crossings = sea.crossing_cells, sea.n_triangles, sea.n_triangles + sea.n_coast
+    count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
+    cells = np.repeat(np.arange(sea.n_cells, dtype=np.int32), np.diff(starts))
+    return Corners(starts, places[:count], neighbours[:count], cells)
+
+
 def following_rows(starts: Index) -> Index:
     """The next row (starts[-1],) round each of the rings that begin at `starts`, up to the last of these."""
     following = np.arange(1, starts[-1] + 1)
@@ -99,12 +123,17 @@ def _fill_corners(
 
 def _require_one_side_each(corners: Corners, n_cells: int) -> None:
     """Raise `MeshError` where a cell meets a neighbour along several sides."""
-    inner = corners.neighbours != COAST
-    pairs = corners.cells[inner].astype(np.int64) * n_cells + corners.neighbours[inner]
-    found, counts = np.unique(pairs, return_counts=True)
+    found, counts = _pairs_of_cells(corners, n_cells)
     if counts.max() > 1:
         cell, other = divmod(int(found[np.argmax(counts)]), n_cells)
         raise _too_coarse(f"cells {cell} and {other} meet on both sides of some land")
+
+
+def _pairs_of_cells(corners: Corners, n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Cell times `n_cells` plus neighbour of all sides between cells, each pair once, and how often there is each."""
+    inner = (corners.neighbours != COAST) & (corners.neighbours < n_cells)
+    pairs = corners.cells[inner].astype(np.int64) * n_cells + corners.neighbours[inner]
+    return np.unique(pairs, return_counts=True)
 
 
 def _too_coarse(what: str) -> MeshError:

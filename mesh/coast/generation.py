@@ -11,13 +11,14 @@ from mesh.coast.coastline import Coastline
 from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaCells, SeaResult
 from mesh.coast.sea_mesh import sea_mesh
-from mesh.coast.short_edges import without_short_edges
+from mesh.coast.short_edges import Part, without_short_edges
 from mesh.coast.start import FEWEST_CELLS, fillers, sea_spacing, starting_points
 from mesh.density.named import Density, uniform
 from mesh.errors import MeshError
 from mesh.generation.optimizer import Callback, Limits, Optimizer
 from mesh.generation.scvt import VARIABLE_TOLERANCE, cells_of, check_converged, density_of, limits_of
 from mesh.geometry.sphere import fibonacci_points
+from mesh.integrals.weighted_moments import WeightedCells, centroid_distances
 from mesh.mesh_request import MeshRequest
 from mesh.regions.coastline import LONGEST
 from mesh.regions.region import Region
@@ -30,6 +31,10 @@ METHODS = ("lbfgs", "lloyd")
 
 COAST_SPACINGS = 1.5
 """Width, in mean spacings, to which the coast is smoothed: bays as narrow as one spacing end in cells of two sides."""
+
+
+PART_ITERATIONS = 500
+"""Iterations for a part of a sea, which mostly takes 50 to 150: one that takes more has gone wrong."""
 
 
 @dataclass(frozen=True)
@@ -66,11 +71,8 @@ def region_mesh(
     found = converge_at_sea(coastline, points, request.method, density, limits.since(begin), callback)
     check_converged(found.result, limits)
 
-    def converge_again(points: Array, tolerance: float) -> SeaResult:
-        left = replace(limits.since(begin), tolerance=tolerance)
-        return converge_at_sea(coastline, points, density=density, limits=left, callback=callback)
-
-    found = without_short_edges(found, converge_again, limits.tolerance, request.seed)
+    descent = SeaDescent(coastline, density, limits, begin, callback)
+    found = without_short_edges(found, descent, limits.tolerance, request.seed)
     return sea_mesh(found.sea, found.result.points, density)
 
 
@@ -128,3 +130,44 @@ def converge_at_sea(
     weight = None if density is uniform else density
     optimizer = Optimizer(points, method=method, density=weight, cells=sea, spacing=spacing)
     return SeaResult(optimizer.run(limits, callback), sea)
+
+
+@dataclass(frozen=True, eq=False)
+class SeaDescent:
+    """Descents at sea under a density, with what is left of `limits` since `time.perf_counter` gave `begin`.
+
+    `callback` hears of those of the whole sea. What they do is told in `mesh.coast.short_edges.Descent`.
+    """
+
+    coastline: Coastline
+    density: Density
+    limits: Limits
+    begin: float
+    callback: Callback | None = None
+
+    def whole(self, points: Array, tolerance: float) -> SeaResult:
+        """What all generators (n, 3) converge to."""
+        limits = replace(self.limits.since(self.begin), tolerance=tolerance)
+        return converge_at_sea(self.coastline, points, density=self.density, limits=limits, callback=self.callback)
+
+    def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
+        """What the generators (k, 3) of a part converge to, in `PART_ITERATIONS` at most."""
+        limits = replace(
+            self.limits.since(self.begin),
+            tolerance=tolerance,
+            iterations=min(self.limits.iterations, PART_ITERATIONS),
+        )
+        sea = SeaCells(points, self.coastline, part.fillers)
+        optimizer = Optimizer(points, density=self._weight, fixed=part.held, cells=sea, spacing=part.spacing)
+        return SeaResult(optimizer.run(limits), sea)
+
+    def residuals(self, points: Array) -> Array:
+        """Distances (n,) of all generators (n, 3) from the centroids of their cells, in mean spacings."""
+        spacing = sea_spacing(self.coastline, len(points))
+        sea = SeaCells(points, self.coastline, fillers(self.coastline, spacing))
+        sums = WeightedCells(self.density, len(points)).integrate(points, sea.circumcenters, sea.ring_starts, sea.rings)
+        return centroid_distances(sums) / spacing
+
+    @property
+    def _weight(self) -> Density | None:
+        return None if self.density is uniform else self.density

@@ -23,7 +23,8 @@ class SeaCells:
     tells which cells the coast leaves and enters. So all of `mesh.integrals` is that of the clipped cells.
 
     `fillers` (k, 3) are points on land that the triangulation needs to surround the sphere; they come after the
-    generators in it, and their cells should not reach the sea.
+    generators in it, and their cells should not reach the sea. Where the cells are only a part of those of the sea,
+    generators round them are fillers too.
     """
 
     def __init__(self, points: Array, coastline: Coastline, fillers: Array) -> None:
@@ -55,6 +56,11 @@ class SeaCells:
     def coastline(self) -> Coastline:
         """The coast."""
         return self._coastline
+
+    @property
+    def fillers(self) -> Array:
+        """Points (k, 3) that complete the triangulation."""
+        return self._fillers
 
     @property
     def n_cells(self) -> int:

@@ -8,6 +8,7 @@ import pytest
 
 from mesh import MeshError, VoronoiMesh, read_mesh, write_mesh
 from mesh.coast.coastline import Coastline
+from mesh.coast.corners import corners_and_faults
 from mesh.coast.portions import portions_of
 from mesh.coast.sea_cells import SeaCells
 from mesh.coast.sea_mesh import sea_mesh
@@ -91,6 +92,10 @@ def test_a_coast_finer_than_the_cells_is_refused() -> None:
     points, cells = cells_of_sea(Coastline([wavy_ring(2000, amplitude=0.3, waves=15)]), 60, "fibonacci")
     with pytest.raises(MeshError, match="ask for more cells, or for a smoother coast"):
         sea_mesh(cells, points)
+    corners, faulty = corners_and_faults(cells)
+    sizes = np.diff(corners.starts)
+    assert 0 < np.count_nonzero(faulty) < cells.n_cells
+    assert faulty[(cells.loops > 1) | (sizes < 3)].all()
 
 
 def test_an_island_within_a_cell_is_refused() -> None:
@@ -101,6 +106,7 @@ def test_an_island_within_a_cell_is_refused() -> None:
     cells = SeaCells(points, pierced, fillers(pierced, sea_spacing(pierced, 60)))
     with pytest.raises(MeshError, match="cell 30 is in several parts or goes round an island"):
         sea_mesh(cells, points)
+    assert np.flatnonzero(corners_and_faults(cells)[1]).tolist() == [30]
 
 
 def test_a_generator_on_land_is_refused() -> None:

@@ -1,5 +1,8 @@
 """Edges of nearly no length, and the meshes without them."""
 
+import time
+from typing import ClassVar
+
 import numpy as np
 import pytest
 
@@ -7,30 +10,42 @@ from mesh import MeshError, MeshWarning
 from mesh.arrays import Array
 from mesh.coast import short_edges
 from mesh.coast.coastline import Coastline
-from mesh.coast.generation import converge_at_sea, region_mesh
+from mesh.coast.generation import SeaDescent, region_mesh
 from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaResult
 from mesh.coast.sea_mesh import sea_mesh
-from mesh.coast.short_edges import COASTAL_EDGE, INNER_EDGE, SideLengths, side_lengths, without_short_edges
+from mesh.coast.short_edges import (
+    COASTAL_EDGE,
+    INNER_EDGE,
+    Part,
+    SideLengths,
+    mended_points,
+    side_lengths,
+    without_short_edges,
+)
 from mesh.density.named import Density, uniform
 from mesh.discrete.walls import wall_edges
-from mesh.generation.optimizer import Limits
+from mesh.generation.optimizer import LARGEST_TOLERANCE, Limits
 from mesh.geometry.sphere import arc_length, hexagon_spacing
 from mesh.mesh_request import MeshRequest
 from mesh.regions.find import find_region
-from tests.mesh.coast.shores import converged, wavy_sea
+from tests.mesh.coast.shores import POLE, converged, wavy_sea
 
 CELLS = 275
 """A lattice in the wavy sea whose dislocations leave an edge of 0.07 spacings."""
 
 TOLERANCE = 1e-6
 
+WIDE, LOOSE = 2300, 1e-3
+"""Cells of a sea in which patches are small, and a tolerance at which they need not touch the rest of it."""
+
+
+def descent_of(coastline: Coastline, density: Density = uniform) -> SeaDescent:
+    return SeaDescent(coastline, density, Limits(TOLERANCE), time.perf_counter())
+
 
 def mended(coastline: Coastline, found: SeaResult, density: Density = uniform, seed: int = 0) -> SeaResult:
-    def again(points: Array, tolerance: float) -> SeaResult:
-        return converge_at_sea(coastline, points, density=density, limits=Limits(tolerance))
-
-    return without_short_edges(found, again, TOLERANCE, seed)
+    return without_short_edges(found, descent_of(coastline, density), TOLERANCE, seed)
 
 
 def lengths_of(found: SeaResult) -> SideLengths:
@@ -96,21 +111,94 @@ def test_under_a_density_edges_are_measured_in_local_spacings() -> None:
     assert better.result.history.residual[-1] <= TOLERANCE
 
 
-def test_what_cannot_be_mended_is_told(found: SeaResult) -> None:
-    def fail(points: Array, tolerance: float) -> SeaResult:
+class Failing(SeaDescent):
+    """A descent that fails on parts of the sea."""
+
+    def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
         raise MeshError("points coincide")
 
-    for again in (fail, lambda points, tolerance: found):
-        with pytest.warns(MeshWarning, match=r"shortest edge has 0\.06\d local spacings .* after 3 attempts"):
-            assert without_short_edges(found, again, TOLERANCE) is found
+
+class Idle(SeaDescent):
+    """A descent that leaves generators of a part where they are put."""
+
+    def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
+        return super().part(points, LARGEST_TOLERANCE, part)
 
 
-def test_a_mesh_that_is_less_centroidal_is_not_taken(coastline: Coastline, found: SeaResult) -> None:
-    def loosely(points: Array, tolerance: float) -> SeaResult:
-        return converge_at_sea(coastline, points, limits=Limits(1e-3))
+class Loose(SeaDescent):
+    """A descent that stops too soon."""
 
-    with pytest.warns(MeshWarning, match="shortest edge"):
-        assert without_short_edges(found, loosely, TOLERANCE) is found
+    def whole(self, points: Array, tolerance: float) -> SeaResult:
+        return super().whole(points, 1e-3)
+
+
+@pytest.mark.parametrize("kind", [Failing, Idle, Loose])
+def test_what_cannot_be_mended_is_told(
+    monkeypatch: pytest.MonkeyPatch, coastline: Coastline, found: SeaResult, kind: type[SeaDescent]
+) -> None:
+    monkeypatch.setattr(short_edges, "ATTEMPTS", 2)
+    descent = kind(coastline, uniform, Limits(TOLERANCE), time.perf_counter())
+    with pytest.warns(MeshWarning, match=r"shortest edge has 0\.06\d local spacings .* after 2 attempts"):
+        assert without_short_edges(found, descent, TOLERANCE) is found
+
+
+@pytest.fixture(scope="module")
+def wide() -> Coastline:
+    return wavy_sea(WIDE, island=False)
+
+
+@pytest.fixture(scope="module")
+def found_in_wide(wide: Coastline) -> SeaResult:
+    """A sea of 50 cells from side to side, more centroidal than will be asked.
+
+    Its shortest edges have 0.191 and 0.200 spacings and are far from one another; the next one has 0.204.
+    """
+    return converged(wide, WIDE, 0.01 * LOOSE)
+
+
+def test_cells_far_from_a_short_edge_stay_where_they_are(
+    monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
+) -> None:
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.195)
+    before, points = lengths_of(found_in_wide), found_in_wide.result.points
+    better = without_short_edges(found_in_wide, descent_of(wide), LOOSE)
+    assert lengths_of(better).lacking == 0.0
+    assert better.result.history.residual[-1] <= LOOSE
+    short = points[before.cells[np.argmin(before.lengths)]]
+    far = arc_length(points, short) > 22.0 * before.spacings.mean()
+    assert np.count_nonzero(far) > 0.5 * WIDE
+    assert (better.result.points[far] == points[far]).all()
+
+
+class Spoiling(SeaDescent):
+    """A descent that puts a generator of the first patch of a part on land, and notes how many cells the part has."""
+
+    sizes: ClassVar[list[int]] = []
+
+    def part(self, points: Array, tolerance: float, part: Part) -> SeaResult:
+        self.sizes.append(len(points))
+        tried = super().part(points, tolerance, part)
+        first = np.flatnonzero((part.patches == part.patches.max()) & ~part.held)[0]
+        tried.result.points[first] = -POLE
+        return tried
+
+
+def test_patches_are_taken_one_by_one(
+    monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
+) -> None:
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.202)
+    lengths, points = lengths_of(found_in_wide), found_in_wide.result.points
+    descent = Spoiling(wide, uniform, Limits(LOOSE), time.perf_counter())
+    mended = mended_points(found_in_wide, lengths, descent, LOOSE, np.random.default_rng(0))
+    assert mended is not None
+    moved = np.flatnonzero((mended != points).any(axis=1))
+    short = points[np.unique(lengths.cells[lengths.shortfalls > 0.0])]
+    away = arc_length(points[moved][:, None], short[None]) / lengths.spacings.mean()
+    assert len(moved) > 100
+    # Only what is near one of the two edges has moved.
+    assert (away < 12.0).any(axis=0).sum() == 2
+    assert max(descent.sizes) < WIDE / 2
+    assert min(descent.sizes) < 0.7 * max(descent.sizes)
 
 
 def test_the_mesh_of_a_region_is_mended(monkeypatch: pytest.MonkeyPatch) -> None:
