@@ -1,4 +1,4 @@
-"""Maps of a study of meshes: where the error lives, on the globe and round the worst cell."""
+"""Maps of a study of meshes: where the error lives, on the whole mesh and round the worst cell."""
 
 import textwrap
 from collections.abc import Sequence
@@ -7,13 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mesh.arrays import Array, Index
-from mesh.geometry.angles import about_zero
-from mesh.geometry.sphere import normalize
-from postprocess.figures.maps import CENTRAL_LONGITUDE, add_polygons, draw_mollweide
+from mesh.arrays import Array
+from postprocess.figures.maps import add_polygons
 from postprocess.figures.palettes import deviation_colours
-from postprocess.figures.patches import cell_patches
-from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
+from postprocess.figures.paper import Paper, paper_of
 from postprocess.studies.lines import named
 from postprocess.studies.mesh_study import Member, thickness_error
 
@@ -48,10 +45,11 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
 def draw_error_map(axes: Axes, member: Member, day: float, name: str) -> Axes:
     """Draw one map of `map_figure`, of the member of this name."""
     error = thickness_error(member, day)
-    draw_mollweide(axes, member.mesh, error, _colours(error))
-    _mark_irregular_cells(axes, member)
+    paper = paper_of(member.mesh)
+    paper.draw(axes, error, _colours(error))
+    _mark_irregular_cells(axes, paper, member)
     worst = int(np.argmax(np.abs(error)))
-    axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
+    axes.plot(*paper.spots(np.array([worst])), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
     axes.set_title(f"{name}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=10)
     return axes
 
@@ -69,23 +67,17 @@ def draw_closeup(axes: Axes, member: Member, day: float, name: str) -> Axes:
     """Draw one panel of `closeup_figure`, of the member of this name."""
     mesh, error = member.mesh, thickness_error(member, day)
     worst = int(np.argmax(np.abs(error)))
-    view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
-    flat = orthographic(normalize(mesh.cell_points), *view)
-    reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.sphere_radius
-    cells = np.flatnonzero((np.abs(flat[:, :2]).max(axis=1) < 1.5 * reach) & (flat[:, 2] > 0.0))
-    polygons = orthographic_polygons(cell_patches(mesh).taken(cells), *view)
-    add_polygons(axes, polygons, error[cells], {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)})
-    for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
-        x, y, _ = flat[cell]
-        axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
+    paper = paper_of(mesh)
+    reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.length_unit
+    closeup = paper.around(worst, 1.5 * reach)
+    options = {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)}
+    add_polygons(axes, closeup.polygons, error[closeup.cells], options)
+    for cell, place in zip(closeup.cells, closeup.centers, strict=True):
+        if mesh.n_edges_on_cell[cell] != 6:
+            axes.text(*place, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
-    axes.set_title(f"{name}\n{place_in_words(*np.degrees(view))}", fontsize=10)
+    axes.set_title(f"{name}\n{paper.place_in_words(worst)}", fontsize=10)
     return axes
-
-
-def place_in_words(longitude: float, latitude: float) -> str:
-    """Longitude and latitude, degrees, to a tenth."""
-    return f"{longitude:.1f}°E {abs(latitude):.1f}°{'N' if latitude >= 0.0 else 'S'}"
 
 
 def _name(member: Member, members: Sequence[Member]) -> str:
@@ -123,17 +115,10 @@ def _colour_bar(figure: Figure, axes: Axes) -> None:
     bar.ax.tick_params(labelsize=9)
 
 
-def _on_map(member: Member, cells: Sequence[int] | Index) -> tuple[Array, Array]:
-    """Coordinates of cells on the Mollweide map."""
-    longitude = about_zero(member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE)
-    x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
-    return x, y
-
-
-def _mark_irregular_cells(axes: Axes, member: Member) -> None:
+def _mark_irregular_cells(axes: Axes, paper: Paper, member: Member) -> None:
     sides = member.mesh.n_edges_on_cell
     if np.count_nonzero(sides != 6) > MOST_DOTS:
         return
     for count, colour in IRREGULAR_COLOURS.items():
         cells = np.flatnonzero(sides == count)
-        axes.plot(*_on_map(member, cells), ".", color=colour, markersize=3)
+        axes.plot(*paper.spots(cells), ".", color=colour, markersize=3)

@@ -3,7 +3,8 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from postprocess.figures.compare_maps import COLUMNS, ROWS, map_figure
+from postprocess.figures.compare_maps import map_figure
+from postprocess.figures.paper import COLUMNS, ROWS
 from postprocess.figures.maps import draw_mollweide_raster
 from postprocess.figures.palettes import colours_for
 
