@@ -35,7 +35,10 @@ REACH = 0.7
 
 
 def block_figure(where: VoronoiMesh | Array, graph: CellGraph, partition: Partition) -> Figure:
-    """All blocks on both hemispheres or the plane, or, where only generators (n_cells, 3) are given, the globe by pixels."""
+    """All blocks, on both hemispheres or on the plane.
+
+    Where only the generators (n_cells, 3) are given they are on the globe, by pixels.
+    """
     colours = colours_of_cells(graph, partition)
     figure = _cell_by_cell(where, colours) if isinstance(where, VoronoiMesh) else _globe(graph, where, colours)
     figure.suptitle(f"{graph.n_cells} cells in {partition.n_blocks} blocks")

@@ -1,8 +1,8 @@
 """Maps of compared runs: each field of all runs, and their differences from the reference, on one equal-area view.
 
-Runs on different meshes are sampled at the same pixels, of a Mollweide map or of a plane, with one colour scale. Differences are taken
-where the run has the field, as the norms do, and then sampled: interpolation blurs them slightly, but adds no error of
-its own to them.
+Runs on different meshes are sampled at the same pixels, of a Mollweide map or of a plane, with one colour scale.
+Differences are taken where the run has the field, as the norms do, and then sampled: interpolation blurs them slightly,
+but adds no error of its own to them.
 """
 
 from dataclasses import dataclass

@@ -1,7 +1,8 @@
-"""Polygons on paper: the sphere on the Mollweide map, the cylindrical one and in orthographic views; planes as they are.
+"""Polygons on paper: the sphere on the Mollweide and the cylindrical map and in orthographic views; planes as they are.
 
 The Mollweide and orthographic maps have the sphere's radius as their unit: the Mollweide ellipse has half axes
-2 sqrt(2) and sqrt(2), the orthographic disc radius 1. The cylindrical map is in degrees of longitude and latitude. Planes are in metres.
+2 sqrt(2) and sqrt(2), the orthographic disc radius 1. The cylindrical map is in degrees of longitude and latitude, and
+planes are in metres.
 """
 
 from collections.abc import Callable

@@ -47,8 +47,8 @@ def film(
     """Write a film of a field at cells, edges or vertices, a frame for each snapshot; return its path.
 
     The name's end, .mp4 or .gif, says the kind. `days` are the first and the last day, by default all. `size` is the
-    width and height in pixels; `projection` and `centre` are those of `plot_field`, which planes do not have. Colours run over all values of the
-    field on these days. `progress` is called with the part that is done.
+    width and height in pixels; `projection` and `centre` are those of `plot_field`, which do not go with planes.
+    Colours run over all values of the field on these days. `progress` is called with the part that is done.
 
     Raises `InputError` where there is no such field, map, kind of film or size, values are damaged, or there are fewer
     than two snapshots.

@@ -26,6 +26,9 @@ CLOSEUP_CELLS = 6.0
 LETTERS_PER_INCH = 11.0
 """Letters of a heading that fit in an inch."""
 
+LINE_HEIGHT = 0.25
+"""Inches of a line of a heading."""
+
 MOST_DOTS = 400
 """Dots are left out if more cells than this are irregular: they would hide the map."""
 
@@ -38,7 +41,7 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     figure, panels = _panel_for_each(members, 2, (4.8, 3.3))
     for axes, member in panels:
         _colour_bar(figure, draw_error_map(axes, member, day, _name(member, members)))
-    figure.suptitle(_wrapped(heading, figure))
+    _write_heading(figure, heading)
     return figure
 
 
@@ -59,7 +62,7 @@ def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figur
     figure, panels = _panel_for_each(members, 3, (3.2, 4.2))
     for axes, member in panels:
         _colour_bar(figure, draw_closeup(axes, member, day, _name(member, members)))
-    figure.suptitle(_wrapped(heading, figure))
+    _write_heading(figure, heading)
     return figure
 
 
@@ -98,9 +101,11 @@ def _panel_for_each(
     return figure, list(zip(grid, compared, strict=False))
 
 
-def _wrapped(heading: str, figure: Figure) -> str:
-    """A heading in lines that are not wider than the figure."""
-    return textwrap.fill(heading, int(LETTERS_PER_INCH * figure.get_figwidth()))
+def _write_heading(figure: Figure, heading: str) -> None:
+    """Write a heading in lines that are not wider than the figure, which has room for two and grows for more."""
+    lines = textwrap.wrap(heading, int(LETTERS_PER_INCH * figure.get_figwidth()))
+    figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * max(0, len(lines) - 2))
+    figure.suptitle("\n".join(lines))
 
 
 def _colours(error: Array) -> dict:
