@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index
 from mesh.discrete.walls import has_walls, wall_edges
 from mesh.geometry.angles import about_zero
-from mesh.geometry.sphere import dot, mean_spacing, normalize
+from mesh.geometry.sphere import mean_spacing, normalize
 from mesh.geometry.surface import surface_of
 from mesh.shown import KILOMETRE
 from mesh.voronoi_mesh import VoronoiMesh
@@ -334,7 +334,9 @@ class PlanePaper:
         axes.set(xlabel=f"x ({symbol})", ylabel=f"y ({symbol})")
         for axis in (axes.xaxis, axes.yaxis):
             axis.set_major_locator(MaxNLocator(MOST_TICKS, steps=[1, 2, 2.5, 5, 10]))
-            axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value / unit:.10g}"))
+            axis.set_major_formatter(
+                FuncFormatter(lambda value, _: f"{value / unit:.10g}".replace("-", "\N{MINUS SIGN}"))
+            )
         if has_walls(self.mesh):
             axes.set_facecolor(LAND)
         return axes
@@ -367,5 +369,5 @@ def _covered(mesh: VoronoiMesh, x: Array, y: Array) -> NDArray[np.bool_]:
     for side in range(mesh.max_edges):
         edges = np.where(side < mesh.n_edges_on_cell[nearest], mesh.edges_on_cell[nearest, side], -1)
         from_edge = surface.shortest(points - mesh.edge_points[edges])[:, :2]
-        covered &= ~((edges >= 0) & is_wall[edges] & (dot(from_edge, normal[edges]) > 0.0))
+        covered &= ~((edges >= 0) & is_wall[edges] & (np.sum(from_edge * normal[edges], axis=1) > 0.0))
     return covered
