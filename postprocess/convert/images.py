@@ -1,13 +1,14 @@
 """Points of polygons and lines that are whole: on a plane that repeats itself, those beyond its seams are images."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
 from mesh.geometry.surface import surface_of
 from mesh.voronoi_mesh import VoronoiMesh
 
 
-def whole_points(mesh: VoronoiMesh, corners: Index, beside: Array) -> tuple[Array, Index, Index]:
+def whole_points(mesh: VoronoiMesh, corners: Index, beside: Array) -> tuple[Array, Index, NDArray[np.int64]]:
     """Points for `corners` (m,), which are vertices, as near as they come to the points `beside` (m, 3) them.
 
     Points (n, 3), the vertex (n,) of which each is an image, and the point (m,) of each corner. All vertices come first

@@ -72,7 +72,7 @@ def plot_field(
     `InputError` where there is no such field, snapshot or window.
     """
     shown = _shown_field(where, field, time)
-    draw = _drawing(shown.mesh, centre, extent, region, projection)
+    draw = drawing_of(shown.mesh, centre, extent, region, projection)
     if ax is None:
         import matplotlib.pyplot as plt  # only here: drawing on Axes of the caller's needs no backend
 
@@ -96,7 +96,7 @@ def _shown_field(where: Run | VoronoiMesh | AnyPath, field: str | Array, time: i
     return snapshot_field(run, field, time) if isinstance(field, str) else given_to_run(run, field, time)
 
 
-def _drawing(
+def drawing_of(
     mesh: VoronoiMesh,
     centre: tuple[float, float],
     extent: Extent,

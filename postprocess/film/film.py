@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from mesh.arrays import Array, Index
 from mesh.safe_files import AnyPath, dataset
-from postprocess.figures.field_map import MIDDLE, Projection, plot_field
+from postprocess.figures.field_map import MIDDLE, Projection, drawing_of, plot_field
 from postprocess.figures.palettes import colours_for
 from postprocess.figures.shown_fields import ShownField, changing_fields, snapshot_field
 from postprocess.film.film_file import require_kind, write_film
@@ -56,6 +56,7 @@ def film(
     path = Path(path)
     _require_size(size)
     require_kind(path, size)
+    drawing_of(run.mesh, centre, None, None, projection)  # refused before all values are read
     rows = _rows(run, days)
     _require_in_time(run, field)
     shown = snapshot_field(run, field, int(rows[0]))

@@ -28,7 +28,7 @@ def grid_of_uxarray(path: Path) -> "uxarray.Grid":
     """
     if _is_of_plane(path):
         raise InputError(
-            f"{path} is a mesh on a plane, of which uxarray would make one on a sphere; take data, plot or trisk convert"
+            f"{path} is a mesh on a plane, and grids of uxarray are on spheres alone; take data, plot or trisk convert"
         )
     return _opened(path, "uxarray", lambda uxarray: uxarray.open_grid(path.absolute()))
 

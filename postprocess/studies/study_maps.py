@@ -75,9 +75,9 @@ def draw_closeup(axes: Axes, member: Member, day: float, name: str) -> Axes:
     closeup = paper.around(worst, 1.5 * reach)
     options = {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)}
     add_polygons(axes, closeup.polygons, error[closeup.cells], options)
-    for cell, place in zip(closeup.cells, closeup.centers, strict=True):
+    for cell, (x, y) in zip(closeup.cells, closeup.centers, strict=True):
         if mesh.n_edges_on_cell[cell] != 6:
-            axes.text(*place, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
+            axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
     axes.set_title(f"{name}\n{paper.place_in_words(worst)}", fontsize=10)
     return axes
