@@ -120,7 +120,6 @@ def test_what_is_of_the_sphere_alone_is_refused_in_a_sentence(
     trisk: Call, run: Path, plane_file: Path, tmp_path: Path
 ) -> None:
     for words in (
-        ("spectra", run, "-o", tmp_path / "spectra"),
         ("film", run, "--field", "thickness", "--centre", "270,0", "-o", tmp_path / "film.gif"),
         ("film", run, "--field", "thickness", "--projection", "mollweide", "-o", tmp_path / "film.gif"),
         ("cull", plane_file, "--keep", "0,10,0,10", "-o", tmp_path / "part.nc"),

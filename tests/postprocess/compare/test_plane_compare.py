@@ -1,4 +1,4 @@
-"""Comparison of runs on planes: fields at other places across the seams, norms, maps, and truncation errors."""
+"""Comparison of runs on planes: fields at other places across the seams, norms, maps, truncation errors, spectra."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,10 +10,12 @@ from mesh import VoronoiMesh, hexagon_mesh, periodic_mesh
 from mesh.arrays import Array
 from mesh.geometry.surface import surface_of
 from postprocess.compare.comparison import compare_runs
+from postprocess.compare.fourier import Fourier
 from postprocess.compare.places import nearest_sites, points_at
 from postprocess.compare.plane_flow import plane_flow
 from postprocess.compare.remap import remap_cells, remap_vertices
 from postprocess.compare.shares import error_shares
+from postprocess.compare.spectra import spectra_of
 from postprocess.compare.truncation import truncation_errors
 from postprocess.figures import compare_maps, paper
 from postprocess.runs.reading import read_run
@@ -123,3 +125,30 @@ def test_the_flow_is_consistent() -> None:
     np.testing.assert_allclose(slopes[0][:, 0] + slopes[1][:, 1], flow.divergence(points), atol=1e-16)
     whole = points + np.array([mesh.x_period, -mesh.y_period, 0.0])
     np.testing.assert_allclose(flow.velocity(whole), flow.velocity(points), atol=1e-18)
+
+
+def test_spectra_of_a_wave_have_its_wavenumber(finer_plane_run: Path) -> None:
+    """One wave along x and one along y, of which 1.15 fit the longer period: hypot(1, 1.15), rounded to two."""
+    run = read_run(finer_plane_run)
+    spectra = spectra_of(run, float(run.days[0]))
+    assert spectra.kinetic_energy[2] > 0.999 * spectra.kinetic_energy.sum()
+    speed = np.hypot(*(run.snapshot(0.0).fields[f"velocity_{name}"] for name in ("zonal", "meridional")))
+    assert spectra.kinetic_energy.sum() == pytest.approx(0.5 * np.mean(speed**2), rel=1e-2)
+    assert spectra.potential_enstrophy.sum() == pytest.approx(0.5 * 100.0 * (1e-4 / 100.0) ** 2, rel=1e-4)
+    assert spectra.wavenumber_in_words == "wavenumber (waves in 1000 km)"
+
+
+@pytest.mark.parametrize("waves", [(0, 0), (3, 0), (0, 2), (-2, 1), (2, 1)])
+def test_power_is_at_the_wavenumber_of_a_wave(waves: tuple[int, int]) -> None:
+    fourier = Fourier((4.0, 2.0), 6)
+    x, y = fourier.points
+    power = fourier.power(3.0 * np.cos(2.0 * np.pi * (waves[0] * x / 4.0 + waves[1] * y / 2.0)))
+    number = round(np.hypot(waves[0], 2 * waves[1]))
+    assert power[number] == pytest.approx(power.sum()) == pytest.approx(9.0 if waves == (0, 0) else 4.5)
+
+
+def test_walls_have_no_spectra(plane_run: Path, channel: VoronoiMesh) -> None:
+    run = read_run(plane_run)
+    vars(run)["mesh"] = channel
+    with pytest.raises(InputError, match="is on a plane with walls"):
+        spectra_of(run, 0.0)
