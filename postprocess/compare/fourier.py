@@ -28,7 +28,8 @@ class Fourier:
     def points(self) -> tuple[Array, Array]:
         """Places x and y (n,), m, at which fields are sampled."""
         rows, columns = self._shape
-        x, y = (period * np.arange(count) / count for period, count in zip(self.periods, (columns, rows), strict=True))
+        x = self.periods[0] * np.arange(columns, dtype=np.float64) / columns
+        y = self.periods[1] * np.arange(rows, dtype=np.float64) / rows
         return np.tile(x, rows), np.repeat(y, columns)
 
     def power(self, field: Array) -> Array:
@@ -39,5 +40,4 @@ class Fourier:
         along = np.fft.fftfreq(columns, 1.0 / columns) * longer / self.periods[0]
         up = np.fft.fftfreq(rows, 1.0 / rows) * longer / self.periods[1]
         wavenumber = np.rint(np.hypot(along[None, :], up[:, None])).astype(np.int64)
-        power: Array = np.bincount(wavenumber.ravel(), squares.ravel())
-        return power
+        return np.asarray(np.bincount(wavenumber.ravel(), squares.ravel()), dtype=np.float64)
