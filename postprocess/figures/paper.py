@@ -55,7 +55,7 @@ ASPECT = 0.53
 LONGEST, SHORTEST = 7.2, 1.8
 """Inches: how long the sides of a plane are drawn at most, and at least."""
 
-WITH_AXES, TITLE = 0.84, 0.13
+WITH_AXES, TITLE = 0.84, 0.17
 """Of the width of a map by pixels of a plane: its own beside its axis, and the height of axis and title."""
 
 MARGIN = 0.02
