@@ -8,9 +8,9 @@ import numpy as np
 
 from cases.base import Case, parameter
 from mesh.arrays import Array
-from mesh.discrete.operators import normal_component, normal_velocity_from_streamfunction
+from mesh.discrete.operators import normal_velocity_from_streamfunction
 from mesh.discrete.walls import wall_edges
-from mesh.integrals.quadrature import Sampling, sample_cells
+from mesh.integrals.quadrature import Sampling, normal_means, sample_cells
 from mesh.shown import Rows, in_words
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.errors import InputError
@@ -74,8 +74,11 @@ class PlaneCase(Case):
         return State(sample_cells(mesh, self.evaluated(self.thickness, time), sampling), velocity)
 
     def normal_velocity_on(self, mesh: VoronoiMesh, time: float) -> Array:
-        """Velocity at `time` along the normals of edges (n_edges,), m/s: that at their middles."""
-        return normal_component(mesh, *self.evaluated_velocity(time)(*mesh.coordinates("edge")))
+        """Velocity at `time` along the normals of edges (n_edges,), m/s: its means over the Voronoi edges.
+
+        So are the differences of a streamfunction.
+        """
+        return normal_means(mesh, self.evaluated_velocity(time))
 
     def parameters(self) -> dict[str, float]:
         """Parameters by name; a plane has no radius, and no axis about which it turns."""

@@ -10,7 +10,7 @@ from cases.base import parameter
 from cases.plane.base import PlaneCase
 from cases.plane.lengths import require_periods
 from mesh.arrays import Array
-from mesh.discrete.operators import normal_component
+from mesh.integrals.quadrature import normal_means
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.terms import Forcing
 from swe.state import State
@@ -95,10 +95,10 @@ class Manufactured(PlaneCase):
         return along - f * v + pressure * k * waves.sin_cos, across + f * u + pressure * l * waves.cos_sin
 
     def terms(self) -> tuple[Forcing, ...]:
-        """The forcing, at the middles of edges and the centres of cells."""
+        """The forcing: means over edges, as the velocity has, and values at the centres of cells."""
 
         def acceleration(mesh: VoronoiMesh, state: State, time: float) -> Array:
-            return normal_component(mesh, *self.acceleration(*mesh.coordinates("edge"), time))
+            return normal_means(mesh, lambda x, y: self.acceleration(x, y, time))
 
         def source(mesh: VoronoiMesh, state: State, time: float) -> Array:
             return self.source(*mesh.coordinates("cell"), time)

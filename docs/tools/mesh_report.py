@@ -14,7 +14,7 @@ from mesh.generation.scvt import density_of, generate_scvt, optimize, starting_m
 from mesh.geometry.sphere import mean_spacing, normalize
 from mesh.mesh_request import MeshRequest
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.figures.plots import draw_mollweide, draw_orthographic
+from postprocess.figures.maps import draw_mollweide, draw_orthographic
 from postprocess.studies.table1 import QUALITY_LABELS, QUALITY_MEASURES
 
 PUBLISHED_CIRCLE = (5.4018, 0.8712, 0.4533, 0.9854, 0.6886)

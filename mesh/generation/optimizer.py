@@ -199,13 +199,9 @@ class Optimizer:
         self._noise, self._least_curvature = RELATIVE_ROUND_OFF, 0.0
         self._least_energy, self._patience = np.inf, PATIENCE
         if self._weighted:
-<<<<<<< HEAD
-            self._evaluate = WeightedCells(density or uniform, len(points), fixed, True, surface.is_flat).evaluate
-=======
             # Plateaus are sought on the whole sphere, as finely as the number of points asks if these cover it.
             often = cells is None or fixed is None
-            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often).evaluate
->>>>>>> w-mend
+            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often, surface.is_flat).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
 

@@ -20,11 +20,15 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.integrals.quadrature import sample_cells
 from mesh.safe_files import AnyPath
+from mesh.voronoi_mesh import surface_in_words
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import RunSolution, Solution, case_of, choose_solution, require_same_problem
 from postprocess.runs.reading import DAY_TOLERANCE, Run, checked, days_in_words, days_of_both, read_run
 from swe.constants import SECONDS_PER_DAY
 from swe.errors import InputError
+
+PERIOD_TOLERANCE = 1e-6
+"""Relative difference up to which two planes repeat themselves after the same lengths, which people round."""
 
 SHOWN_DIAGNOSTICS = (
     "mass_change",
@@ -93,7 +97,7 @@ def compare_runs(*runs: Run | AnyPath, reference: Run | AnyPath = "auto", days: 
     """Compare runs, open or named by their directories, on `days`; by default on the last day that all of them have.
 
     `reference` is a run, its directory, "auto", "exact" or a reference file: see
-    `postprocess.compare.solutions.choose_solution`. Raises `InputError` if the runs differ in case, radius
+    `postprocess.compare.solutions.choose_solution`. Raises `InputError` if the runs differ in case, surface
     or parameters, if a snapshot is missing, or if there is nothing to compare with.
     """
     if not runs:
@@ -104,7 +108,7 @@ def compare_runs(*runs: Run | AnyPath, reference: Run | AnyPath = "auto", days: 
 
 def _comparison(runs: Sequence[Run], reference: str, days: Sequence[float]) -> Comparison:
     for run in runs[1:]:
-        _require_same_radius(run, runs[0])
+        _require_same_surface(run, runs[0])
         require_same_problem(run.directory, run.case, run.parameters, runs[0])
     for run in runs:
         for day in days:
@@ -112,7 +116,7 @@ def _comparison(runs: Sequence[Run], reference: str, days: Sequence[float]) -> C
     candidates = list(days) if days else _common_days(runs)
     solution = choose_solution(reference, runs, candidates, every=bool(days))
     if isinstance(solution, RunSolution):
-        _require_same_radius(solution.run, runs[0])
+        _require_same_surface(solution.run, runs[0])
     chosen = tuple(sorted(set(days))) if days else (_last_known_day(solution, candidates),)
     background = _background_depth(runs[0])
     entries = [_entry(run, solution, day, background) for day in chosen for run in runs]
@@ -193,11 +197,17 @@ def _conservation(run: Run, day: float) -> dict[str, float]:
     return {name: float(run.series[name][row]) for name in SHOWN_DIAGNOSTICS}
 
 
-def _require_same_radius(run: Run, first: Run) -> None:
+def _require_same_surface(run: Run, first: Run) -> None:
     if not np.isclose(run.mesh.sphere_radius, first.mesh.sphere_radius, rtol=1e-12, atol=0.0):
         raise InputError(
             f"{run.directory} is on a sphere of radius {run.mesh.sphere_radius:g} m, but {first.directory} on one of "
             f"{first.mesh.sphere_radius:g} m; compare runs on one sphere"
+        )
+    periods, of_first = ((each.mesh.x_period, each.mesh.y_period) for each in (run, first))
+    if not np.allclose(periods, of_first, rtol=PERIOD_TOLERANCE, atol=0.0):
+        raise InputError(
+            f"{run.directory} is on {surface_in_words(run.mesh)}, but {first.directory} on "
+            f"{surface_in_words(first.mesh)}; compare runs on one plane"
         )
 
 

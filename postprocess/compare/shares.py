@@ -47,8 +47,8 @@ class Share:
 def error_shares(mesh: VoronoiMesh, error: Array) -> dict[str, Share]:
     """Shares by zone of an error (n_cells,), of any unit; empty where there is no error.
 
-    Zones are the `BANDS` of latitude that hold cells, `near_irregular` (pentagons, heptagons and the cells round them),
-    on a sea `near_coast`, and on a refined mesh `refined`, `transition` and `coarse`.
+    Zones are, on a sphere, the `BANDS` of latitude that hold cells, `near_irregular` (pentagons, heptagons and the
+    cells round them), on a sea `near_coast`, and on a refined mesh `refined`, `transition` and `coarse`.
     """
     squared = mesh.area_cell * error**2
     total = float(squared.sum())
@@ -72,14 +72,19 @@ def shares_as_columns(shares: Mapping[str, Share]) -> dict[str, float]:
 
 def zones(mesh: VoronoiMesh) -> dict[str, Mask]:
     """Masks (n_cells,) of the zones by name; those that the mesh lacks are empty or not there."""
-    latitude = np.degrees(mesh.lat_cell)
-    found = {name: (latitude >= south) & (latitude < north) for name, (south, north) in BANDS.items()}
-    found["north_of_60n"] |= latitude >= BANDS["north_of_60n"][1]
+    found = _bands(mesh) if mesh.on_a_sphere else {}
     found["near_irregular"] = _grown(mesh, mesh.n_edges_on_cell != 6)
     at_wall = np.zeros(mesh.n_cells, bool)
     at_wall[mesh.cells_on_edge[wall_edges(mesh)].max(axis=1)] = True
     found["near_coast"] = _grown(mesh, at_wall)
     return found | _refinement(mesh)
+
+
+def _bands(mesh: VoronoiMesh) -> dict[str, Mask]:
+    latitude = np.degrees(mesh.lat_cell)
+    found = {name: (latitude >= south) & (latitude < north) for name, (south, north) in BANDS.items()}
+    found["north_of_60n"] |= latitude >= BANDS["north_of_60n"][1]
+    return found
 
 
 def _grown(mesh: VoronoiMesh, mask: Mask) -> Mask:

@@ -46,9 +46,7 @@ def convert_run(
     directory, output = Path(directory), Path(output)
     _require_possible(output, FORMATS[to], force)
     _require_other_place(output, directory)
-    run = read_run(directory)
-    run.mesh.require_sphere("runs are converted")
-    return FORMATS[to].write(contents_of(run), output, history, progress)
+    return FORMATS[to].write(contents_of(read_run(directory)), output, history, progress)
 
 
 def _require_possible(output: Path, chosen: Format, force: bool) -> None:

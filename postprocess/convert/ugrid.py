@@ -7,8 +7,16 @@ import netCDF4
 import numpy as np
 
 from mesh.safe_files import dataset, written_aside
+from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.convert.contents import Contents
-from postprocess.convert.ugrid_mesh import FACE_AREA, LOCATIONS, define_mesh, fill_mesh, place_attributes
+from postprocess.convert.ugrid_mesh import (
+    FACE_AREA,
+    LOCATIONS,
+    define_mesh,
+    fill_mesh,
+    place_attributes,
+    surface_attributes,
+)
 from postprocess.runs.reading import Progress, Run
 from swe.diagnostics.outputs import Field
 from swe.errors import RunError
@@ -29,9 +37,9 @@ def write_ugrid(contents: Contents, path: Path, history: str, progress: Progress
             define_mesh(file, run.mesh)
             _define_time(file, len(run.days))
             for name, (field, _) in contents.fixed.items():
-                _define_field(file, name, field, (LOCATIONS[field.place],))
+                _define_field(file, run.mesh, name, field, (LOCATIONS[field.place],))
             for name, field in contents.fields.items():
-                _define_field(file, name, field, (TIME, LOCATIONS[field.place]))
+                _define_field(file, run.mesh, name, field, (TIME, LOCATIONS[field.place]))
                 file[name].cell_methods = field.cell_methods(TIME)
             fill_mesh(file, run.mesh)
             _fill_fields(file, contents, progress)
@@ -58,7 +66,7 @@ def _attributes(run: Run, history: str) -> dict[str, object]:
         "history": history,
         "case": run.case,
         "parameters": json.dumps(run.parameters),
-        "sphere_radius": run.mesh.sphere_radius,
+        **surface_attributes(run.mesh),
         "mesh_hash": str(run.record.get("mesh_hash", "")),
     }
 
@@ -77,10 +85,12 @@ def _define_time(file: netCDF4.Dataset, count: int) -> None:
     )
 
 
-def _define_field(file: netCDF4.Dataset, name: str, field: Field, dimensions: tuple[str, ...]) -> None:
+def _define_field(
+    file: netCDF4.Dataset, mesh: VoronoiMesh, name: str, field: Field, dimensions: tuple[str, ...]
+) -> None:
     location = dimensions[-1]
     variable = file.createVariable(name, np.float64, dimensions, fill_value=False)
-    variable.setncatts({"units": field.units, "long_name": field.meaning, **place_attributes(location)})
+    variable.setncatts({"units": field.units, "long_name": field.meaning, **place_attributes(mesh, location)})
     if field.standard_name:
         variable.standard_name = field.standard_name
     if location == "face":

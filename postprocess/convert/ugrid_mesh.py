@@ -4,12 +4,16 @@ Indices count from 0 (`start_index`); -1, the fill value, stands beyond the corn
 no face on the other side of an edge.
 """
 
+from collections.abc import Callable
+from dataclasses import dataclass
+
 import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
+from mesh.geometry.surface import surface_of
 from mesh.voronoi_mesh import VoronoiMesh
 
 MESH = "mesh"
@@ -23,6 +27,29 @@ LOCATIONS = {"nCells": "face", "nEdges": "edge", "nVertices": "node"}
 CORNERS, TWO, WALLS = "corner", "two", "wall"
 
 FILL = -1
+
+
+@dataclass(frozen=True)
+class Coordinate:
+    """One of the two coordinates on a surface: the name that the mesh has for it, what CF calls it, and its units.
+
+    `in_units` turns what the mesh holds into these.
+    """
+
+    name: str
+    standard_name: str
+    units: str
+    in_units: Callable[[Array], Array]
+
+
+ON_SPHERE = (
+    Coordinate("lon", "longitude", "degrees_east", np.degrees),
+    Coordinate("lat", "latitude", "degrees_north", np.degrees),
+)
+ON_PLANE = (
+    Coordinate("x", "projection_x_coordinate", "m", np.asarray),
+    Coordinate("y", "projection_y_coordinate", "m", np.asarray),
+)
 
 MEANINGS = {
     "face_nodes": "nodes of each face, counter-clockwise",
@@ -42,12 +69,12 @@ def define_mesh(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
     sizes |= {CORNERS: _corners(mesh), TWO: 2} | ({WALLS: len(walls)} if len(walls) else {})
     for name, size in sizes.items():
         file.createDimension(name, size)
-    file.createVariable(MESH, "i4", ()).setncatts(_topology(with_walls=len(walls) > 0))
+    file.createVariable(MESH, "i4", ()).setncatts(_topology(mesh, with_walls=len(walls) > 0))
     for location in LOCATIONS.values():
-        _define_coordinates(file, location)
+        _define_coordinates(file, mesh, location)
     for name in _connectivity(mesh):
         _define_connectivity(file, name)
-    _define_measures(file)
+    _define_measures(file, mesh)
 
 
 def fill_mesh(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
@@ -55,8 +82,8 @@ def fill_mesh(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
     file[MESH][...] = 0
     places = {"face": "cell", "edge": "edge", "node": "vertex"}
     for location, place in places.items():
-        for kind in ("lon", "lat"):
-            file[f"{location}_{kind}"][:] = np.degrees(getattr(mesh, f"{kind}_{place}"))
+        for each in _coordinates_of(mesh):
+            file[f"{location}_{each.name}"][:] = each.in_units(getattr(mesh, f"{each.name}_{place}"))
     for kind, bounds in _bounds(mesh).items():
         file[f"face_{kind}_bounds"][:] = bounds
     for name, values in _connectivity(mesh).items():
@@ -65,17 +92,28 @@ def fill_mesh(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
     file["edge_normal_angle"][:] = np.degrees(mesh.angle_edge)
 
 
-def place_attributes(location: str) -> dict[str, str]:
+def place_attributes(mesh: VoronoiMesh, location: str) -> dict[str, str]:
     """Attributes of a field that say where on the mesh its values are."""
-    return {"mesh": MESH, "location": location, "coordinates": _coordinates(location)}
+    return {"mesh": MESH, "location": location, "coordinates": _coordinates(mesh, location)}
 
 
-def _topology(with_walls: bool) -> dict[str, str | np.int32]:
+def surface_attributes(mesh: VoronoiMesh) -> dict[str, float]:
+    """Global attributes that tell the sphere, or after which lengths, m, a plane repeats itself."""
+    if mesh.on_a_sphere:
+        return {"sphere_radius": mesh.sphere_radius}
+    return {"x_period": mesh.x_period, "y_period": mesh.y_period}
+
+
+def _coordinates_of(mesh: VoronoiMesh) -> tuple[Coordinate, Coordinate]:
+    return ON_SPHERE if mesh.on_a_sphere else ON_PLANE
+
+
+def _topology(mesh: VoronoiMesh, with_walls: bool) -> dict[str, str | np.int32]:
     attributes: dict[str, str | np.int32] = {
         "cf_role": "mesh_topology",
-        "long_name": "topology of the Voronoi mesh on the sphere",
+        "long_name": f"topology of the Voronoi mesh on {'the sphere' if mesh.on_a_sphere else 'a plane'}",
         "topology_dimension": np.int32(2),
-        **{f"{location}_coordinates": _coordinates(location) for location in LOCATIONS.values()},
+        **{f"{location}_coordinates": _coordinates(mesh, location) for location in LOCATIONS.values()},
         "face_dimension": "face",
         "edge_dimension": "edge",
         "face_node_connectivity": "face_nodes",
@@ -87,15 +125,16 @@ def _topology(with_walls: bool) -> dict[str, str | np.int32]:
     return attributes | ({"boundary_node_connectivity": "wall_nodes"} if with_walls else {})
 
 
-def _coordinates(location: str) -> str:
-    return f"{location}_lon {location}_lat"
+def _coordinates(mesh: VoronoiMesh, location: str) -> str:
+    return " ".join(f"{location}_{each.name}" for each in _coordinates_of(mesh))
 
 
-def _define_coordinates(file: netCDF4.Dataset, location: str) -> None:
-    for kind, full, units in (("lon", "longitude", "degrees_east"), ("lat", "latitude", "degrees_north")):
-        name = f"{location}_{kind}"
+def _define_coordinates(file: netCDF4.Dataset, mesh: VoronoiMesh, location: str) -> None:
+    for each in _coordinates_of(mesh):
+        name = f"{location}_{each.name}"
         variable = file.createVariable(name, "f8", (location,), fill_value=False)
-        variable.setncatts({"standard_name": full, "long_name": f"{full} of {location}s", "units": units})
+        long_name = f"{each.standard_name if mesh.on_a_sphere else each.name} of {location}s"
+        variable.setncatts({"standard_name": each.standard_name, "long_name": long_name, "units": each.units})
         if location == "face":
             variable.bounds = f"{name}_bounds"
             file.createVariable(variable.bounds, "f8", (location, CORNERS), fill_value=False)
@@ -110,13 +149,14 @@ def _define_connectivity(file: netCDF4.Dataset, name: str) -> None:
     variable.setncatts({"cf_role": f"{role}_connectivity", "long_name": MEANINGS[name], "start_index": np.int32(0)})
 
 
-def _define_measures(file: netCDF4.Dataset) -> None:
+def _define_measures(file: netCDF4.Dataset, mesh: VoronoiMesh) -> None:
     area = file.createVariable(FACE_AREA, "f8", ("face",), fill_value=False)
     area.setncatts({"standard_name": "cell_area", "long_name": "area of faces", "units": "m2"})
-    area.setncatts(place_attributes("face"))
+    area.setncatts(place_attributes(mesh, "face"))
     angle = file.createVariable("edge_normal_angle", "f8", ("edge",), fill_value=False)
-    angle.setncatts({"long_name": "angle of the normal of edges, counter-clockwise from east", "units": "degrees"})
-    angle.setncatts(place_attributes("edge"))
+    origin = "east" if mesh.on_a_sphere else "the x axis"
+    angle.setncatts({"long_name": f"angle of the normal of edges, counter-clockwise from {origin}", "units": "degrees"})
+    angle.setncatts(place_attributes(mesh, "edge"))
 
 
 def _connectivity(mesh: VoronoiMesh) -> dict[str, NDArray[np.int32]]:
@@ -135,12 +175,17 @@ def _corners(mesh: VoronoiMesh) -> int:
 
 
 def _bounds(mesh: VoronoiMesh) -> dict[str, Array]:
-    """Longitudes and latitudes of the corners of faces (face, corner), degrees; the last corner is repeated.
+    """Coordinates of the corners of faces (face, corner), degrees or m; the last corner is repeated.
 
-    Longitudes are within 180 degrees of that of the face, so that no face is torn where they start again.
+    Longitudes are within 180 degrees of that of the face, so that no face is torn where they start again; so are those
+    on a plane within half a period.
     """
     last = np.minimum(np.arange(_corners(mesh)), mesh.n_edges_on_cell[:, None] - 1)
     corners = np.take_along_axis(mesh.vertices_on_cell, last, axis=1)
+    if not mesh.on_a_sphere:
+        ways = surface_of(mesh).shortest(mesh.vertex_points[corners] - mesh.cell_points[:, None])
+        x, y, _ = np.moveaxis(mesh.cell_points[:, None] + ways, -1, 0)
+        return {"x": x, "y": y}
     middle = np.degrees(mesh.lon_cell)[:, None]
     away = np.degrees(mesh.lon_vertex)[corners] - middle
     longitudes = middle + away - 360.0 * np.round(away / 360.0)

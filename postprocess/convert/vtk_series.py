@@ -5,9 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from mesh.arrays import Array
+from mesh.arrays import Index
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.convert.contents import Contents
+from postprocess.convert.images import whole_points
 from postprocess.convert.vtu import LINE, POLYGON, Grid, Values, write_series, write_vtu
 from postprocess.convert.whole_folder import folder_aside
 from postprocess.runs.reading import Progress, Snapshot
@@ -22,10 +23,11 @@ PATTERNS = ("*.vtu", f"{CELL_SERIES}.pvd", f"{EDGE_SERIES}.pvd")
 
 @dataclass(frozen=True, eq=False)
 class _Series:
-    """Files of one grid, and the places whose fields are at its cells and at its points."""
+    """Files of one grid, the vertex at each of its points, and the places whose fields are at its cells and points."""
 
     name: str
     grid: Grid
+    sources: Index
     at_cells: str
     at_points: str
     files: list[str] = field(default_factory=list)
@@ -33,7 +35,8 @@ class _Series:
     def add(self, folder: Path, contents: Contents, snapshot: Snapshot) -> None:
         """Write the file of a snapshot."""
         name = f"{self.name}_{len(self.files):05d}.vtu"
-        at_cells, at_points = (_values_at(place, contents, snapshot) for place in (self.at_cells, self.at_points))
+        at_cells = _values_at(self.at_cells, contents, snapshot)
+        at_points = _values_at(self.at_points, contents, snapshot, self.sources)
         write_vtu(folder / name, self.grid, at_cells, at_points, snapshot.day)
         self.files.append(name)
 
@@ -44,9 +47,9 @@ def write_vtk(contents: Contents, folder: Path, _: str, progress: Progress) -> l
     Raises `RunError` where they cannot be written.
     """
     mesh, days = contents.run.mesh, contents.run.days
-    series = [_Series(CELL_SERIES, cell_grid(mesh), CELLS, VERTICES)]
+    series = [_Series(CELL_SERIES, *cell_grid(mesh), CELLS, VERTICES)]
     if any(each.place == EDGES for each in contents.fields.values()):
-        series.append(_Series(EDGE_SERIES, edge_grid(mesh), EDGES, ""))
+        series.append(_Series(EDGE_SERIES, *edge_grid(mesh), EDGES, ""))
     try:
         with folder_aside(folder, PATTERNS) as aside:
             for _number, snapshot in contents.snapshots(progress):
@@ -59,24 +62,27 @@ def write_vtk(contents: Contents, folder: Path, _: str, progress: Progress) -> l
     return [folder / f"{each.name}.pvd" for each in series]
 
 
-def cell_grid(mesh: VoronoiMesh) -> Grid:
-    """Voronoi cells as polygons, counter-clockwise from outside; the vertices are its points."""
-    corners = mesh.vertices_on_cell[mesh.on_ring].astype(np.int64)
-    return Grid(_vertices(mesh), corners, np.cumsum(mesh.n_edges_on_cell, dtype=np.int64), POLYGON)
+def cell_grid(mesh: VoronoiMesh) -> tuple[Grid, Index]:
+    """Voronoi cells as polygons, counter-clockwise from outside, and the vertex (n_points,) at each point.
+
+    Points are the vertices and, where a plane repeats itself, their images beyond its seams.
+    """
+    centers = np.repeat(mesh.cell_points, mesh.n_edges_on_cell, axis=0)
+    points, sources, corners = whole_points(mesh, mesh.vertices_on_cell[mesh.on_ring], centers)
+    return Grid(points, corners, np.cumsum(mesh.n_edges_on_cell, dtype=np.int64), POLYGON), sources
 
 
-def edge_grid(mesh: VoronoiMesh) -> Grid:
-    """Edges as lines between vertices, along the tangent."""
-    ends = np.arange(2, 2 * mesh.n_edges + 1, 2, dtype=np.int64)
-    return Grid(_vertices(mesh), mesh.vertices_on_edge.reshape(-1).astype(np.int64), ends, LINE)
+def edge_grid(mesh: VoronoiMesh) -> tuple[Grid, Index]:
+    """Edges as lines between vertices, along the tangent, and the vertex at each point; see `cell_grid`."""
+    tails = np.repeat(mesh.vertex_points[mesh.vertices_on_edge[:, 0]], 2, axis=0)
+    points, sources, corners = whole_points(mesh, mesh.vertices_on_edge.reshape(-1), tails)
+    return Grid(points, corners, np.arange(2, 2 * mesh.n_edges + 1, 2, dtype=np.int64), LINE), sources
 
 
-def _vertices(mesh: VoronoiMesh) -> Array:
-    return np.stack([mesh.x_vertex, mesh.y_vertex, mesh.z_vertex], axis=1)
-
-
-def _values_at(place: str, contents: Contents, snapshot: Snapshot) -> dict[str, Values]:
-    fixed = {name: Values(values, each.units) for name, (each, values) in contents.fixed.items() if each.place == place}
-    return fixed | {
-        name: Values(snapshot.fields[name], each.units) for name, each in contents.fields.items() if each.place == place
+def _values_at(place: str, contents: Contents, snapshot: Snapshot, sources: Index | None = None) -> dict[str, Values]:
+    """Fields at a place by name; with `sources`, the values (n_points,) of these entities."""
+    values = {name: (each, fixed) for name, (each, fixed) in contents.fixed.items() if each.place == place}
+    values |= {name: (each, snapshot.fields[name]) for name, each in contents.fields.items() if each.place == place}
+    return {
+        name: Values(found if sources is None else found[sources], each.units) for name, (each, found) in values.items()
     }

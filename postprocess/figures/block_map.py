@@ -9,22 +9,17 @@ from matplotlib.figure import Figure
 from scipy.spatial import cKDTree
 
 from mesh.arrays import Array
-from mesh.geometry.sphere import from_lonlat, mean_spacing
+from mesh.geometry.sphere import from_lonlat
 from mesh.partition.cell_graph import CellGraph, block_graph
 from mesh.partition.colouring import proper_colours
 from mesh.partition.partition import Partition
 from mesh.safe_files import AnyPath, written_aside
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.figures.maps import CENTRAL_LONGITUDE, draw_mollweide_raster, draw_orthographic
+from postprocess.figures.maps import CENTRAL_LONGITUDE, draw_mollweide_raster
+from postprocess.figures.paper import Paper, paper_of
 from postprocess.figures.projections import mollweide_raster
 
 DOTS_PER_INCH = 150
-HEMISPHERE = 8.0
-"""Width of the view of a hemisphere, inches."""
-
-VIEWS = ((CENTRAL_LONGITUDE, np.radians(25.0)), (CENTRAL_LONGITUDE - np.pi, np.radians(-25.0)))
-"""Longitude and latitude under the viewer: two sides of the globe that together show all of it."""
-
 COLOURS = ("#5b8fc7", "#f4c95d", "#d9695f", "#7db87d", "#b79bd2", "#efe9dc", "#a07c5a", "#7ccfc8", "#f2a6ba", "#666666")
 """Five are usual, and six the most on a sphere whose blocks are connected."""
 
@@ -40,9 +35,12 @@ REACH = 0.7
 
 
 def block_figure(where: VoronoiMesh | Array, graph: CellGraph, partition: Partition) -> Figure:
-    """All blocks on both hemispheres, or, where only the generators (n_cells, 3) are given, on the globe by pixels."""
+    """All blocks, on both hemispheres or on the plane.
+
+    Where only the generators (n_cells, 3) are given they are on the globe, by pixels.
+    """
     colours = colours_of_cells(graph, partition)
-    figure = _hemispheres(where, colours) if isinstance(where, VoronoiMesh) else _globe(graph, where, colours)
+    figure = _cell_by_cell(where, colours) if isinstance(where, VoronoiMesh) else _globe(graph, where, colours)
     figure.suptitle(f"{graph.n_cells} cells in {partition.n_blocks} blocks")
     return figure
 
@@ -66,17 +64,20 @@ def _colour_options() -> dict[str, Any]:
     return {"cmap": ListedColormap(COLOURS), "norm": BoundaryNorm(np.arange(len(COLOURS) + 1) - 0.5, len(COLOURS))}
 
 
-def _outlines(n_cells: int) -> dict[str, Any]:
+def _outlines(paper: Paper) -> dict[str, Any]:
     """Options of the sides of cells: thin lines where cells are large enough to be seen."""
-    dots = mean_spacing(n_cells) * 0.5 * HEMISPHERE * DOTS_PER_INCH
+    dots = paper.width_of_cell * DOTS_PER_INCH
     return {"edgecolors": "#404040", "linewidths": min(0.02 * dots, 0.5)} if dots >= LEAST_CELL_WIDTH else {}
 
 
-def _hemispheres(mesh: VoronoiMesh, colours: Array) -> Figure:
-    figure = Figure(figsize=(2.0 * HEMISPHERE, HEMISPHERE + 0.6), layout="constrained")
-    options = {**_colour_options(), **_outlines(mesh.n_cells)}
-    for axes, (longitude, latitude) in zip(figure.subplots(1, 2), VIEWS, strict=True):
-        draw_orthographic(axes, mesh, colours, options, longitude, latitude)
+def _cell_by_cell(mesh: VoronoiMesh, colours: Array) -> Figure:
+    paper = paper_of(mesh)
+    views = paper.sides
+    figure = Figure(figsize=views.size, layout="constrained")
+    options = {**_colour_options(), **_outlines(paper)}
+    grid = np.atleast_1d(figure.subplots(1, len(views.draw), width_ratios=views.widths))
+    for axes, draw in zip(grid, views.draw, strict=True):
+        draw(axes, colours, options)
     return figure
 
 

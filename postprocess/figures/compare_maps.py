@@ -1,8 +1,8 @@
 """Maps of compared runs: each field of all runs, and their differences from the reference, on one equal-area view.
 
-Runs on different meshes are sampled at the same pixels of a Mollweide map with one colour scale. Differences are taken
-where the run has the field, as the norms do, and then sampled: interpolation blurs them slightly, but adds no error of
-its own to them.
+Runs on different meshes are sampled at the same pixels, of a Mollweide map or of a plane, with one colour scale.
+Differences are taken where the run has the field, as the norms do, and then sampled: interpolation blurs them slightly,
+but adds no error of its own to them.
 """
 
 from dataclasses import dataclass
@@ -15,14 +15,10 @@ from mesh.arrays import Array
 from mesh.safe_files import AnyPath
 from postprocess.compare.comparison import Comparison, fields_of, fields_on
 from postprocess.compare.solutions import RunSolution, Solution
-from postprocess.figures.maps import CENTRAL_LONGITUDE, draw_mollweide_raster
 from postprocess.figures.palettes import Colours, colours_for, deviation_colours
+from postprocess.figures.paper import Raster, globe_raster, paper_of
 from postprocess.figures.plots import DOTS_PER_INCH
-from postprocess.figures.projections import mollweide_raster
 from postprocess.runs.folders import prepared_folder
-
-ROWS, COLUMNS = 360, 720
-"""Pixels of the maps."""
 
 WIDTH, WIDTH_OF_ONE = 9.6, 6.6
 """Inches of figures with two maps beside each other, and with one: letters are then legible on a page of the former."""
@@ -58,15 +54,15 @@ MAP_FIELDS = {
 }
 
 Values = dict[str, Array]
-"""Values (ROWS * COLUMNS,) of each field."""
+"""Values (rows * columns,) of each field."""
 
 
 def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
     """Write maps of all fields and differences on the last day that was compared to `folder`; return their paths."""
     folder = prepared_folder(folder)
     day = comparison.days[-1]
-    longitude, latitude = mollweide_raster(ROWS, COLUMNS)
-    longitude = longitude + CENTRAL_LONGITUDE
+    raster = paper_of(comparison.compared[0].mesh).raster
+    longitude, latitude = raster.places
     reference, compared = comparison.solution, [RunSolution(run) for run in comparison.compared]
     values = [_values(solution, longitude, latitude, day) for solution in (reference, *compared)]
     differences = [_differences(solution, reference, longitude, latitude, day) for solution in compared]
@@ -75,11 +71,12 @@ def write_maps(comparison: Comparison, folder: AnyPath) -> list[Path]:
     for name, field in MAP_FIELDS.items():
         heading = f"{field.title}: {comparison.case}, day {day:g}"
         panels = [each[name] / field.unit for each in values]
-        figure = map_figure(panels, names, heading, field.label, colours_for(field.colours, panels))
+        figure = map_figure(panels, names, heading, field.label, colours_for(field.colours, panels), raster)
         paths.append(_save(figure, folder, name_of_map(name, day)))
         panels = [each[name] / field.unit for each in differences]
         heading += f"\ndifference from the reference, {reference.name}"
-        figure = map_figure(panels, names[1:], heading, field.difference_label, _colours_of_errors(field, panels))
+        colours = _colours_of_errors(field, panels)
+        figure = map_figure(panels, names[1:], heading, field.difference_label, colours, raster)
         paths.append(_save(figure, folder, name_of_map(name, day, difference=True)))
     return paths
 
@@ -115,15 +112,19 @@ def _differences(ours: RunSolution, solution: Solution, longitude: Array, latitu
     }
 
 
-def map_figure(panels: list[Array], titles: list[str], heading: str, label: str, colours: Colours) -> Figure:
-    """One map for each of `panels` with one colour scale; up to two maps beside each other."""
+def map_figure(
+    panels: list[Array], titles: list[str], heading: str, label: str, colours: Colours, raster: Raster | None = None
+) -> Figure:
+    """One map for each of `panels` with one colour scale, by default of the globe; up to two maps beside each other."""
+    raster = raster or globe_raster()
     columns = min(len(panels), 2)
     rows = -(-len(panels) // columns)
     width = WIDTH if columns > 1 else WIDTH_OF_ONE
-    figure = Figure(figsize=(width, 0.53 * width / columns * rows + 1.0), layout="constrained")
+    figure = Figure(figsize=(width, raster.aspect * width / columns * rows + 1.0), layout="constrained")
     grid = np.atleast_1d(figure.subplots(rows, columns)).ravel()
     for axes, title, values in zip(grid, titles, panels, strict=False):
-        drawn = draw_mollweide_raster(axes, values.reshape(ROWS, COLUMNS), colours.options).images[-1]
+        shown = np.where(raster.covered, values, np.nan).reshape(raster.shape)
+        drawn = raster.draw(axes, shown, colours.options).images[-1]
         axes.set_title(title, fontsize=9)
     for axes in grid[len(panels) :]:
         axes.axis("off")

@@ -1,5 +1,6 @@
 """A map of any field of a run or a mesh, centred and zoomed anywhere: what `trisk.plot_field` draws."""
 
+from functools import partial
 from typing import Literal, get_args
 
 import numpy as np
@@ -15,6 +16,7 @@ from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.figures.maps import draw_mollweide, draw_orthographic
 from postprocess.figures.palettes import colours_for
+from postprocess.figures.paper import Draw, PlanePaper
 from postprocess.figures.shown_fields import ShownField, given_field, given_to_run, mesh_field, snapshot_field
 from postprocess.figures.windows import Window, draw_cylindrical, draw_orthographic_window
 from postprocess.runs.reading import Run, open_run
@@ -26,7 +28,12 @@ LARGEST = {"mollweide": (360.0, 180.0), "orthographic": (180.0, 180.0), "cylindr
 """Width and height, degrees, of what a map shows without an extent."""
 
 Region = tuple[float, float, float, float]
-"""West, east, south and north, degrees."""
+"""West, east, south and north: degrees, or on a plane metres along x and y."""
+
+MIDDLE = (0.0, 0.0)
+"""Longitude and latitude of the middle of maps, degrees, unless another is asked for."""
+
+Extent = float | tuple[float, float] | None
 
 
 def plot_field(
@@ -35,8 +42,8 @@ def plot_field(
     ax: Axes | None = None,
     *,
     time: int = -1,
-    centre: tuple[float, float] = (0.0, 0.0),
-    extent: float | tuple[float, float] | None = None,
+    centre: tuple[float, float] = MIDDLE,
+    extent: Extent = None,
     region: Region | None = None,
     projection: Projection | None = None,
     cmap: str | Colormap | None = None,
@@ -56,21 +63,21 @@ def plot_field(
     the first of the globe, and the second with an `extent` or off the equator. `region` gives a window by its sides
     instead, (west, east, south, north) in degrees, on the cylindrical projection.
 
+    A plane is drawn as it is, from border to border where it repeats itself; the data coordinates of its Axes are
+    metres. Its `region` is (left, right, bottom, top) in metres; what else is told of the globe does not go with it.
+
     Colours run over the values on the map, symmetrically where these have both signs, in the palette of the field
     (`postprocess.figures.palettes`), unless `cmap` or `norm` say otherwise. The colour bar has the name and the units
     of the field, or `label`, and takes its room from `ax`; without `ax`, the map is on a new figure of pyplot. Raises
     `InputError` where there is no such field, snapshot or window.
     """
     shown = _shown_field(where, field, time)
-    if region is not None:
-        centre, extent, projection = _box(region, centre, extent, projection)
-    chosen = projection or ("mollweide" if extent is None and centre[1] == 0.0 else "orthographic")
-    window = _window(chosen, centre, extent)
+    draw = drawing_of(shown.mesh, centre, extent, region, projection)
     if ax is None:
         import matplotlib.pyplot as plt  # only here: drawing on Axes of the caller's needs no backend
 
         _, ax = plt.subplots(layout="constrained")
-    _draw(ax, shown, chosen, window, whole=extent is None)
+    draw(ax, shown.values, {})
     drawn = ax.collections[-1]
     _set_colours(drawn, _values_in_view(ax, drawn), shown.name, cmap, norm)
     if shown.title:
@@ -89,17 +96,57 @@ def _shown_field(where: Run | VoronoiMesh | AnyPath, field: str | Array, time: i
     return snapshot_field(run, field, time) if isinstance(field, str) else given_to_run(run, field, time)
 
 
+def drawing_of(
+    mesh: VoronoiMesh,
+    centre: tuple[float, float],
+    extent: Extent,
+    region: Region | None,
+    projection: Projection | None,
+) -> Draw:
+    """How values on a mesh are drawn; raise `InputError` where there is no such map."""
+    if not mesh.on_a_sphere:
+        if (centre, extent, projection) != (MIDDLE, None, None):
+            raise InputError(
+                "a plane is drawn as it is, without projection, centre and extent; leave them out, and for a part of "
+                "it give region, (left, right, bottom, top) in metres"
+            )
+        return PlanePaper(mesh).draw if region is None else partial(PlanePaper(mesh).draw, box=_part_of(mesh, region))
+    if region is not None:
+        centre, extent, projection = _box(region, centre, extent, projection)
+    chosen = projection or ("mollweide" if extent is None and centre[1] == 0.0 else "orthographic")
+    return partial(_draw, mesh, chosen, _window(chosen, centre, extent), extent is None)
+
+
+def _part_of(mesh: VoronoiMesh, region: Region) -> Region:
+    """The region of a plane; raise `InputError` where there is no such one."""
+    if np.shape(region) != (4,):
+        raise InputError(f"a plane has no region {region}; give four numbers, left, right, bottom and top in metres")
+    left, right, bottom, top = region
+    if not (np.isfinite(region).all() and left < right and bottom < top):
+        raise InputError(
+            f"a plane has no region {region}; give left, right, bottom and top in metres, left below right and bottom "
+            "below top"
+        )
+    for side, period in ((right - left, mesh.x_period), (top - bottom, mesh.y_period)):
+        if 0.0 < period < side:
+            raise InputError(
+                f"the region {region} is {side:g} m long where the plane repeats itself after {period:g} m; give a "
+                "smaller one"
+            )
+    return left, right, bottom, top
+
+
 def _box(
     region: Region,
     centre: tuple[float, float],
-    extent: float | tuple[float, float] | None,
+    extent: Extent,
     projection: Projection | None,
 ) -> tuple[tuple[float, float], tuple[float, float], Projection]:
     """Centre, extent and projection of a `region`; raise `InputError` where there is no such region on a map."""
     if np.shape(region) != (4,):
         raise InputError(f"a map has no region {region}; give four numbers, west, east, south and north in degrees")
     west, east, south, north = region
-    if centre != (0.0, 0.0) or extent is not None or projection not in (None, "cylindrical"):
+    if centre != MIDDLE or extent is not None or projection not in (None, "cylindrical"):
         raise InputError(
             f"a region {region} is drawn between its meridians and parallels, on the cylindrical projection; give it "
             "without centre and extent, or these without a region"
@@ -112,7 +159,7 @@ def _box(
     return (west + 0.5 * width, 0.5 * (south + north)), (width, north - south), "cylindrical"
 
 
-def _window(projection: Projection, centre: tuple[float, float], extent: float | tuple[float, float] | None) -> Window:
+def _window(projection: Projection, centre: tuple[float, float], extent: Extent) -> Window:
     """What a map shows; raise `InputError` where there is no such map."""
     if projection not in get_args(Projection):
         known = ", ".join(get_args(Projection))
@@ -137,15 +184,16 @@ def _window(projection: Projection, centre: tuple[float, float], extent: float |
     return Window(longitude, latitude, width, height)
 
 
-def _draw(axes: Axes, shown: ShownField, projection: Projection, window: Window, whole: bool) -> None:
+def _draw(
+    mesh: VoronoiMesh, projection: Projection, window: Window, whole: bool, axes: Axes, values: Array, options: dict
+) -> Axes:
     if projection == "cylindrical":
-        draw_cylindrical(axes, shown.mesh, shown.values, {}, window)
-    elif projection == "mollweide":
-        draw_mollweide(axes, shown.mesh, shown.values, {}, window.centre[0])
-    elif whole:
-        draw_orthographic(axes, shown.mesh, shown.values, {}, *window.centre)
-    else:
-        draw_orthographic_window(axes, shown.mesh, shown.values, {}, window)
+        return draw_cylindrical(axes, mesh, values, options, window)
+    if projection == "mollweide":
+        return draw_mollweide(axes, mesh, values, options, window.centre[0])
+    if whole:
+        return draw_orthographic(axes, mesh, values, options, *window.centre)
+    return draw_orthographic_window(axes, mesh, values, options, window)
 
 
 def _values_in_view(axes: Axes, drawn: Collection) -> Array:

@@ -11,20 +11,22 @@ from mesh.discrete.operators import vertex_to_cell
 from mesh.discrete.quality import mesh_quality, neighbour_distance_ratio, triangle_quality
 from mesh.safe_files import AnyPath
 from mesh.voronoi_mesh import VoronoiMesh
-from postprocess.figures.maps import draw_mollweide, draw_orthographic
 from postprocess.figures.palettes import colours_for
+from postprocess.figures.paper import paper_of
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
-from swe.constants import SECONDS_PER_DAY, SQUARE_METRES_PER_SQUARE_KILOMETRE
+from swe.constants import SECONDS_PER_DAY
 
 DOTS_PER_INCH = 150
+ALIKE, BAR = 1e-9, 0.01
+"""Relative differences up to the former are none; of measures without differences a range of the latter is shown."""
+
 ROUND_OFF_FLOOR = 1e-20
 """Smaller changes are drawn at this value, since zero has no logarithm."""
 
 
 def plot_run(run: Run, folder: AnyPath) -> list[Path]:
     """Write all figures of `run` to `folder`; return their paths."""
-    run.mesh.require_sphere("figures of runs are drawn")
     folder = prepared_folder(folder)
     last = run.last_snapshot()
     heading = f"{run.case}, {run.mesh.n_cells} cells, day {last.day:g}"
@@ -61,16 +63,17 @@ def plot_run(run: Run, folder: AnyPath) -> list[Path]:
 
 
 def field_figure(mesh: VoronoiMesh, values: Array, title: str, label: str, name: str = "") -> Figure:
-    """Cell values on the equal-area global view and on an orthographic one, with one colour bar.
+    """Cell values on the views of `postprocess.figures.paper`, with one colour bar.
 
     Colours are those of the field called `name`, see `postprocess.figures.palettes.colours_for`.
     """
     options = colours_for(name, values).options
-    figure = Figure(figsize=(12.0, 4.8), layout="constrained")
-    wide, round_ = figure.subplots(1, 2, width_ratios=[2.0, 1.0])
-    draw_mollweide(wide, mesh, values, options)
-    drawn = draw_orthographic(round_, mesh, values, options).collections[-1]
-    figure.colorbar(drawn, ax=[wide, round_], location="bottom", shrink=0.6, aspect=40, label=label)
+    views = paper_of(mesh).views
+    figure = Figure(figsize=views.size, layout="constrained")
+    grid = list(np.atleast_1d(figure.subplots(1, len(views.draw), width_ratios=views.widths)))
+    for axes, draw in zip(grid, views.draw, strict=True):
+        drawn = draw(axes, values, options).collections[-1]
+    figure.colorbar(drawn, ax=grid, location="bottom", shrink=views.bar, aspect=40, label=label)
     figure.suptitle(title)
     return figure
 
@@ -81,9 +84,13 @@ def mesh_figure(mesh: VoronoiMesh) -> Figure:
     figure = Figure(figsize=(12.0, 4.6), layout="constrained")
     left, right = np.asarray(figure.subfigures(1, 2, width_ratios=[1.6, 1.0]))
     map_axes = left.subplots()
-    area = mesh.area_cell / SQUARE_METRES_PER_SQUARE_KILOMETRE
-    drawn = draw_mollweide(map_axes, mesh, area, colours_for("area_cell", area).options).collections[-1]
-    left.colorbar(drawn, ax=map_axes, location="bottom", shrink=0.8, label="area of cells (km²)")
+    paper = paper_of(mesh)
+    unit, symbol = paper.unit
+    area = mesh.area_cell / unit**2
+    if np.ptp(area) <= ALIKE * area.max():
+        area = np.full(mesh.n_cells, area.mean())  # colours would show round-off
+    drawn = paper.draw(map_axes, area, colours_for("area_cell", area).options).collections[-1]
+    left.colorbar(drawn, ax=map_axes, location="bottom", shrink=0.8, label=f"area of cells ({symbol}²)")
     distributions = (
         (neighbour_distance_ratio(mesh), "σ, shortest over longest neighbour distance", "cells"),
         (triangle_quality(mesh), "q of Delaunay triangles, 1 if equilateral", "triangles"),
@@ -92,13 +99,20 @@ def mesh_figure(mesh: VoronoiMesh) -> Figure:
         values = values[np.isfinite(values)]  # those beside walls are none
         if not len(values):
             continue
-        axes.hist(values, bins=60, color="tab:blue")
+        axes.hist(values, bins=60, range=_range(values), color="tab:blue")
         axes.set_yscale("log")
         axes.set_xlabel(label)
         axes.set_ylabel(f"number of {count}")
         axes.set_title(f"mean {values.mean():.4f}, smallest {values.min():.4f}", fontsize=9)
     figure.suptitle(f"Mesh of {mesh.n_cells} cells: μ = {quality.mu:.4f}, area ratio {quality.area_ratio:.3f}")
     return figure
+
+
+def _range(values: Array) -> tuple[float, float]:
+    """Ends of a histogram: of regular hexagons all values are one, but for round-off."""
+    least, most = float(values.min()), float(values.max())
+    middle = 0.5 * (least + most)
+    return (least, most) if most - least > ALIKE else (middle - 0.5 * BAR, middle + 0.5 * BAR)
 
 
 def _conservation_figure(series: dict[str, Array], title: str) -> Figure:

@@ -1,7 +1,8 @@
-"""Polygons of the sphere on flat maps: the equal-area Mollweide map, the cylindrical one and orthographic views.
+"""Polygons on paper: the sphere on the Mollweide and the cylindrical map and in orthographic views; planes as they are.
 
 The Mollweide and orthographic maps have the sphere's radius as their unit: the Mollweide ellipse has half axes
-2 sqrt(2) and sqrt(2), the orthographic disc radius 1. The cylindrical map is in degrees of longitude and latitude.
+2 sqrt(2) and sqrt(2), the orthographic disc radius 1. The cylindrical map is in degrees of longitude and latitude, and
+planes are in metres.
 """
 
 from collections.abc import Callable
@@ -21,6 +22,10 @@ LONG_SIDE = np.radians(15.0)
 
 ON_THE_POLE = 1e-9
 """Sides closer to a pole than this (radians) run through it."""
+
+
+Box = tuple[float, float, float, float]
+"""What is drawn of a plane: left, right, bottom and top, metres."""
 
 
 @dataclass(frozen=True)
@@ -114,6 +119,30 @@ def orthographic_polygons(patches: Patches, longitude: float, latitude: float) -
     flat, depth = corners[visible, :, :2], corners[visible, :, 2]
     at_limb = flat / np.linalg.norm(flat, axis=-1, keepdims=True)
     return Polygons(list(np.where(depth[..., None] > 0.0, flat, at_limb)), np.flatnonzero(visible))
+
+
+def plane_polygons(patches: Patches, periods: Array, box: Box) -> Polygons:
+    """The patches of a plane with these periods (2,), metres, and all their images, that reach into `box`, whole."""
+    corners = patches.corners[..., :2]
+    least, most = corners.min(axis=1), corners.max(axis=1)
+    left, right, bottom, top = box
+    outlines: list[Array] = []
+    shown = []
+    for across in _shifts(least[:, 0], most[:, 0], float(periods[0]), left, right):
+        for up in _shifts(least[:, 1], most[:, 1], float(periods[1]), bottom, top):
+            shift = np.array([across, up])
+            seen = np.all((most + shift > (left, bottom)) & (least + shift < (right, top)), axis=1)
+            outlines.extend(corners[seen] + shift)
+            shown.append(np.flatnonzero(seen))
+    return Polygons(outlines, np.concatenate(shown))
+
+
+def _shifts(least: Array, most: Array, period: float, low: float, high: float) -> Array:
+    """Multiples of a period by which patches, from `least` to `most` (n,), may come between `low` and `high`."""
+    if period == 0.0:
+        return np.zeros(1)
+    first, last = np.ceil((low - most.max()) / period), np.floor((high - least.min()) / period)
+    return period * np.arange(first, last + 1.0)
 
 
 def _from_meridian(longitude: Array, central_longitude: float) -> Array:

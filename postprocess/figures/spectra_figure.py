@@ -45,7 +45,7 @@ def spectra_figure(spectra: Sequence[Spectra]) -> Figure:
         for slope, style in zip(GUIDES[name], ("--", ":"), strict=False):
             guide = 2.0 * first[int(x[0])] * (x / x[0]) ** slope
             axes.loglog(x, guide, color="grey", linestyle=style, label=f"slope {slope:.3g}")
-        axes.set_xlabel("total wavenumber")
+        axes.set_xlabel(spectra[0].wavenumber_in_words)
         axes.set_ylabel(label)
         axes.grid(alpha=0.3, which="both")
         axes.legend(fontsize=7)

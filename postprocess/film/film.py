@@ -11,7 +11,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from mesh.arrays import Array, Index
 from mesh.safe_files import AnyPath, dataset
-from postprocess.figures.field_map import Projection, plot_field
+from postprocess.figures.field_map import MIDDLE, Projection, drawing_of, plot_field
 from postprocess.figures.palettes import colours_for
 from postprocess.figures.shown_fields import ShownField, changing_fields, snapshot_field
 from postprocess.film.film_file import require_kind, write_film
@@ -41,22 +41,22 @@ def film(
     days: tuple[float, float] | None = None,
     size: tuple[int, int] = SIZE,
     projection: Projection | None = None,
-    centre: tuple[float, float] = (0.0, 0.0),
+    centre: tuple[float, float] = MIDDLE,
     progress: Progress = lambda what, part: None,
 ) -> Path:
     """Write a film of a field at cells, edges or vertices, a frame for each snapshot; return its path.
 
     The name's end, .mp4 or .gif, says the kind. `days` are the first and the last day, by default all. `size` is the
-    width and height in pixels; `projection` and `centre` are those of `plot_field`. Colours run over all values of the
-    field on these days. `progress` is called with the part that is done.
+    width and height in pixels; `projection` and `centre` are those of `plot_field`, which do not go with planes.
+    Colours run over all values of the field on these days. `progress` is called with the part that is done.
 
     Raises `InputError` where there is no such field, map, kind of film or size, values are damaged, or there are fewer
     than two snapshots.
     """
     path = Path(path)
-    run.mesh.require_sphere("films are made")
     _require_size(size)
     require_kind(path, size)
+    drawing_of(run.mesh, centre, None, None, projection)  # refused before all values are read
     rows = _rows(run, days)
     _require_in_time(run, field)
     shown = snapshot_field(run, field, int(rows[0]))

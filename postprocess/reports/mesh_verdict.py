@@ -138,10 +138,17 @@ def stalling(lines: Lines) -> list[str]:
             worst = last[-1]
             sentences.append(
                 f"On {name}, l∞ of thickness stalls between {last[0]['cells']} and {worst['cells']} cells at "
-                f"{worst['thickness_linf']:.2g} (order {linf:.2f}, of l2 {l2:.2f}): the worst cell is "
-                f"{worst['worst_to_irregular']:.1f} mean distances from the nearest cell that is no hexagon."
+                f"{worst['thickness_linf']:.2g} (order {linf:.2f}, of l2 {l2:.2f}){_near_irregular(worst)}."
             )
     return sentences
+
+
+def _near_irregular(row: StudyRow) -> str:
+    """How near the worst cell is to an irregular one, if there are any."""
+    if "worst_to_irregular" not in row:
+        return ""
+    away = f"{row['worst_to_irregular']:.1f} mean distances"
+    return f": the worst cell is {away} from the nearest cell that is no hexagon"
 
 
 def costs(lines: Lines) -> list[str]:

@@ -33,6 +33,9 @@ ZONE_WORDS = {
 }
 """Zones that are no bands of latitude."""
 
+ASKED = {"band of latitude": tuple(BANDS), "zone of the refinement": ("transition",)}
+"""Zones that are named where none of them stands out, by what they are called."""
+
 Verdict = Mapping[str, Sequence[str]]
 """Sentences by the question that they answer."""
 
@@ -105,9 +108,11 @@ def where_in_words(name: str, row: StudyRow, error: str = "error") -> str:
     found += [_share(row, [zone], words) for zone, words in ZONE_WORDS.items() if stands_out(row, zone)]
     if found:
         return f"Of the squared {error} of {name}, {listed(found)}."
-    asked = ["band of latitude", *(["zone of the refinement"] if "error_share_transition" in row else [])]
-    none = f"The squared {error} of {name} is spread: no {' and no '.join(asked)} holds {OUTSTANDING:g} times its share"
-    return f"{none} of the area{_irregular(row)}."
+    asked = [words for words, zones in ASKED.items() if any(f"error_share_{zone}" in row for zone in zones)]
+    spread = f"The squared {error} of {name} is spread"
+    if asked:
+        spread += f": no {' and no '.join(asked)} holds {OUTSTANDING:g} times its share of the area"
+    return f"{spread}{_irregular(row)}."
 
 
 def _irregular(row: StudyRow) -> str:

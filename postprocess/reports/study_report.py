@@ -6,6 +6,7 @@ from pathlib import Path
 from mesh.discrete.quality import Quality
 from postprocess.reports.captions import mesh_captions, time_captions
 from postprocess.reports.mesh_verdict import mesh_verdict
+from postprocess.reports.sentences import has_shares
 from postprocess.reports.share_columns import share_columns
 from postprocess.reports.time_verdict import time_verdict
 from postprocess.studies.lines import lines_of
@@ -31,8 +32,11 @@ ERROR_COLUMNS = {
     "uncertainty_thickness": "uncertainty of thickness",
     "worst_longitude": "worst cell: longitude (°)",
     "worst_latitude": "latitude (°)",
+    "worst_x_km": "worst cell: x (km)",
+    "worst_y_km": "y (km)",
     "worst_to_irregular": "worst cell: cells away from one that is no hexagon",
 }
+SHARES = "Where the error lives: shares of its square and of the area"
 SHARE_COLUMNS = {"family": "family", "cells": "cells", **share_columns("error")}
 QUALITY_COLUMNS = {"family": "family", **{name: name.replace("_", " ") for name in Quality.__dataclass_fields__}}
 TRUNCATION_COLUMNS = {
@@ -79,11 +83,13 @@ def write_mesh_report(plan: Plan, finest: Sequence[Member], rows: Sequence[Study
     sections = {
         "Solution errors": table_of(rows, ERROR_COLUMNS),
         "Fitted orders": table_of(_order_rows(compared), {"family": "family", **ERRORS}),
-        "Where the error lives: shares of its square and of the area": table_of(rows, SHARE_COLUMNS),
+        SHARES: table_of(rows, SHARE_COLUMNS),
         "Quality of the meshes": table_of(rows, QUALITY_COLUMNS),
         "Truncation errors of the operators": table_of(rows, TRUNCATION_COLUMNS),
         "Conservation, largest change on the way": table_of(rows, CONSERVATION_COLUMNS),
     }
+    if not any(has_shares(row) for row in rows):
+        del sections[SHARES]
     reference = next((str(row["reference"]) for row in compared), "none")
     text = (
         f"{plan.case.title} ({plan.case.reference}), run to day {plan.days:g}; errors on day {plan.error_day:g} "

@@ -5,7 +5,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mesh.safe_files import netcdf_lock
+from mesh.safe_files import dataset, netcdf_lock
 from swe.errors import InputError
 
 if TYPE_CHECKING:
@@ -24,9 +24,21 @@ def opened_by_xarray(path: Path) -> "xarray.Dataset":
 def grid_of_uxarray(path: Path) -> "uxarray.Grid":
     """Open a mesh file as a Grid.
 
-    Raises `InputError` if uxarray is not installed or the file cannot be read.
+    Raises `InputError` if uxarray is not installed, or the file cannot be read or is of a plane.
     """
+    if _is_of_plane(path):
+        raise InputError(
+            f"{path} is a mesh on a plane, and grids of uxarray are on spheres alone; take data, plot or trisk convert"
+        )
     return _opened(path, "uxarray", lambda uxarray: uxarray.open_grid(path.absolute()))
+
+
+def _is_of_plane(path: Path) -> bool:
+    try:
+        with dataset(path) as file:
+            return str(getattr(file, "on_a_sphere", "YES")).strip().upper() == "NO"
+    except (OSError, RuntimeError):
+        return False  # whoever opens it is told
 
 
 def _opened(path: Path, package: str, opened_by: Callable[[Any], Any]) -> Any:

@@ -103,7 +103,8 @@ class Run(Shown):
         try:
             with dataset(self.directory / MESH_FILE) as file:
                 if np.any(file["boundaryVertex"][:]):
-                    return share_of_sphere(np.asarray(file["areaCell"][:]), float(file.sphere_radius))
+                    radius = float(file.sphere_radius)
+                    return share_of_sphere(np.asarray(file["areaCell"][:]), radius) if radius > 0.0 else "walls"
         except (OSError, RuntimeError, LookupError, AttributeError, ValueError):
             pass  # whoever reads the mesh is told what is wrong with it
         return ""

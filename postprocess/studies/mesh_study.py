@@ -16,7 +16,7 @@ from mesh.arrays import Array
 from mesh.discrete.quality import mesh_quality
 from mesh.files.io import read_mesh, write_mesh
 from mesh.generation.generators import icosahedral_level
-from mesh.geometry.sphere import mean_spacing
+from mesh.geometry.surface import surface_of
 from mesh.safe_files import dataset
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.compare.comparison import Comparison, compare_runs, fields_of, fields_on
@@ -24,8 +24,9 @@ from postprocess.compare.shares import error_shares, shares_as_columns
 from postprocess.compare.truncation import truncation_errors
 from postprocess.runs.folders import prepared_folder
 from postprocess.runs.reading import Run
-from postprocess.studies.families import FAMILIES
+from postprocess.studies.families import FAMILIES, Family
 from postprocess.studies.lines import run_name
+from postprocess.studies.plane_families import StudyPlane
 from postprocess.studies.study_folder import CONSERVATION, TABLE_FILE, StudyRow, Task, Tell, require_days, write_table
 from swe.configuration import Options, SchemeName
 from swe.errors import InputError
@@ -37,8 +38,8 @@ LEAST_CELLS, LARGEST_CELLS = 162, 655362
 class Plan:
     """What a study runs: `case` for `days` on `families` of meshes of about `cells` cells, errors taken at `error_day`.
 
-    Each of the `schemes` runs on the same meshes. Raises `InputError` if a family is unknown or a number of cells is
-    not that of a bisected icosahedron.
+    Each of the `schemes` runs on the same meshes, which are on a `plane` where there is one. Raises `InputError` if a
+    family is unknown or a number of cells is not that of a bisected icosahedron, or of hexagons that fit the plane.
     """
 
     folder: Path
@@ -48,13 +49,22 @@ class Plan:
     families: tuple[str, ...]
     cells: tuple[int, ...]
     schemes: tuple[SchemeName, ...] = (Options.scheme,)
+    plane: StudyPlane | None = None
+
+    @property
+    def known_families(self) -> dict[str, Family]:
+        """Families of meshes on the surface of the case, by name."""
+        return FAMILIES if self.plane is None else self.plane.families
 
     def __post_init__(self) -> None:
+        known = self.known_families
         for family in self.families:
-            if family not in FAMILIES:
-                raise InputError(f"there is no family of meshes named '{family}'; choose among {', '.join(FAMILIES)}")
+            if family not in known:
+                raise InputError(f"there is no family of meshes named '{family}'; choose among {', '.join(known)}")
         for cells in self.cells:
-            if icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
+            if self.plane is not None:
+                self.plane.require_cells(cells)
+            elif icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
                 raise InputError(
                     f"{cells} cells are no bisected icosahedron of a suitable size; choose among {LEAST_CELLS}, 642, "
                     f"2562, ... up to {LARGEST_CELLS}"
@@ -82,7 +92,9 @@ class Member:
     @property
     def spacing(self) -> float:
         """Mean distance between neighbours, km."""
-        return mean_spacing(self.mesh.n_cells) * self.mesh.sphere_radius / 1e3
+        surface = surface_of(self.mesh)
+        area = float(self.mesh.area_cell.sum()) if surface.is_flat else surface.area
+        return surface.mean_spacing(self.mesh.n_cells, area) * self.mesh.length_unit / 1e3
 
 
 def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], list[StudyRow]]:
@@ -103,7 +115,7 @@ def carry_out(plan: Plan, progress: bool, tell: Tell) -> tuple[list[Member], lis
 def _members(plan: Plan, family: str, cells: int, progress: bool, tell: Tell) -> Iterator[Member]:
     """Read or make one mesh, and the run of each scheme on it."""
     name = f"{family}-{cells}"
-    mesh = _mesh(plan.folder / "meshes" / f"{name}.nc", family, cells, tell)
+    mesh = _mesh(plan.folder / "meshes" / f"{name}.nc", plan.known_families[family], cells, tell)
     for scheme in dict.fromkeys(plan.schemes):
         folder = plan.folder / "runs" / run_name(name, scheme)
         task = Task(folder, plan.case, mesh, plan.days, plan.error_day, scheme=scheme)
@@ -122,13 +134,13 @@ def _comparison(run: Run, day: float, tell: Tell) -> Comparison | None:
         return None
 
 
-def _mesh(path: Path, family: str, cells: int, tell: Tell) -> VoronoiMesh:
+def _mesh(path: Path, family: Family, cells: int, tell: Tell) -> VoronoiMesh:
     """Read a mesh, or make it if it is missing or was made differently."""
-    origin = f"mesh of a study: {FAMILIES[family].description}; {cells} cells asked for"
+    origin = f"mesh of a study: {family.description}; {cells} cells asked for"
     if not (path.exists() and _history(path).endswith(origin)):
         tell(f"{path.stem}: making the mesh")
         path.parent.mkdir(exist_ok=True)
-        write_mesh(FAMILIES[family].make(cells), path, origin)
+        write_mesh(family.make(cells), path, origin)
     return read_mesh(path)
 
 
@@ -179,13 +191,21 @@ def _errors(member: Member, comparison: Comparison, day: float) -> StudyRow:
 
 
 def _worst_cell(member: Member, day: float) -> StudyRow:
-    """Where the error of thickness is largest, degrees, and how many mean distances away the mesh is irregular."""
+    """Where the error of thickness is largest, degrees or km, and how many mean distances away the mesh is irregular.
+
+    The latter is not there if all cells are hexagons.
+    """
     mesh = member.mesh
     worst = int(np.argmax(np.abs(thickness_error(member, day))))
+    if mesh.on_a_sphere:
+        row: StudyRow = {
+            "worst_longitude": float(np.degrees(mesh.lon_cell[worst])),
+            "worst_latitude": float(np.degrees(mesh.lat_cell[worst])),
+        }
+    else:
+        row = {f"worst_{axis}_km": float(getattr(mesh, f"{axis}_cell")[worst]) / 1e3 for axis in "xy"}
     irregular = mesh.cell_points[mesh.n_edges_on_cell != 6]
-    nearest = float(np.linalg.norm(irregular - mesh.cell_points[worst], axis=1).min())
-    return {
-        "worst_longitude": float(np.degrees(mesh.lon_cell[worst])),
-        "worst_latitude": float(np.degrees(mesh.lat_cell[worst])),
-        "worst_to_irregular": nearest / (1e3 * member.spacing),
-    }
+    if len(irregular):
+        ways = surface_of(mesh).shortest(irregular - mesh.cell_points[worst])
+        row["worst_to_irregular"] = float(np.linalg.norm(ways, axis=1).min()) / (1e3 * member.spacing)
+    return row

@@ -1,4 +1,4 @@
-"""Maps of a study of meshes: where the error lives, on the globe and round the worst cell."""
+"""Maps of a study of meshes: where the error lives, on the whole mesh and round the worst cell."""
 
 import textwrap
 from collections.abc import Sequence
@@ -7,13 +7,10 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from mesh.arrays import Array, Index
-from mesh.geometry.angles import about_zero
-from mesh.geometry.sphere import normalize
-from postprocess.figures.maps import CENTRAL_LONGITUDE, add_polygons, draw_mollweide
+from mesh.arrays import Array
+from postprocess.figures.maps import add_polygons
 from postprocess.figures.palettes import deviation_colours
-from postprocess.figures.patches import cell_patches
-from postprocess.figures.projections import mollweide, orthographic, orthographic_polygons
+from postprocess.figures.paper import Paper, paper_of
 from postprocess.studies.lines import named
 from postprocess.studies.mesh_study import Member, thickness_error
 
@@ -29,6 +26,9 @@ CLOSEUP_CELLS = 6.0
 LETTERS_PER_INCH = 11.0
 """Letters of a heading that fit in an inch."""
 
+LINE_HEIGHT = 0.25
+"""Inches of a line of a heading."""
+
 MOST_DOTS = 400
 """Dots are left out if more cells than this are irregular: they would hide the map."""
 
@@ -41,17 +41,18 @@ def map_figure(members: Sequence[Member], day: float, heading: str) -> Figure:
     figure, panels = _panel_for_each(members, 2, (4.8, 3.3))
     for axes, member in panels:
         _colour_bar(figure, draw_error_map(axes, member, day, _name(member, members)))
-    figure.suptitle(_wrapped(heading, figure))
+    _write_heading(figure, heading)
     return figure
 
 
 def draw_error_map(axes: Axes, member: Member, day: float, name: str) -> Axes:
     """Draw one map of `map_figure`, of the member of this name."""
     error = thickness_error(member, day)
-    draw_mollweide(axes, member.mesh, error, _colours(error))
-    _mark_irregular_cells(axes, member)
+    paper = paper_of(member.mesh)
+    paper.draw(axes, error, _colours(error))
+    _mark_irregular_cells(axes, paper, member)
     worst = int(np.argmax(np.abs(error)))
-    axes.plot(*_on_map(member, [worst]), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
+    axes.plot(*paper.spots(np.array([worst])), "o", color="lime", markersize=9, fillstyle="none", markeredgewidth=1.5)
     axes.set_title(f"{name}, {member.mesh.n_cells} cells, at most {np.abs(error[worst]):.2g} m", fontsize=10)
     return axes
 
@@ -61,7 +62,7 @@ def closeup_figure(members: Sequence[Member], day: float, heading: str) -> Figur
     figure, panels = _panel_for_each(members, 3, (3.2, 4.2))
     for axes, member in panels:
         _colour_bar(figure, draw_closeup(axes, member, day, _name(member, members)))
-    figure.suptitle(_wrapped(heading, figure))
+    _write_heading(figure, heading)
     return figure
 
 
@@ -69,23 +70,17 @@ def draw_closeup(axes: Axes, member: Member, day: float, name: str) -> Axes:
     """Draw one panel of `closeup_figure`, of the member of this name."""
     mesh, error = member.mesh, thickness_error(member, day)
     worst = int(np.argmax(np.abs(error)))
-    view = float(mesh.lon_cell[worst]), float(mesh.lat_cell[worst])
-    flat = orthographic(normalize(mesh.cell_points), *view)
-    reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.sphere_radius
-    cells = np.flatnonzero((np.abs(flat[:, :2]).max(axis=1) < 1.5 * reach) & (flat[:, 2] > 0.0))
-    polygons = orthographic_polygons(cell_patches(mesh).taken(cells), *view)
-    add_polygons(axes, polygons, error[cells], {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)})
-    for cell in cells[mesh.n_edges_on_cell[cells] != 6]:
-        x, y, _ = flat[cell]
-        axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
+    paper = paper_of(mesh)
+    reach = CLOSEUP_CELLS * np.sqrt(mesh.area_cell[worst]) / mesh.length_unit
+    closeup = paper.around(worst, 1.5 * reach)
+    options = {"edgecolors": "grey", "linewidths": 0.4, **_colours(error)}
+    add_polygons(axes, closeup.polygons, error[closeup.cells], options)
+    for cell, (x, y) in zip(closeup.cells, closeup.centers, strict=True):
+        if mesh.n_edges_on_cell[cell] != 6:
+            axes.text(x, y, str(mesh.n_edges_on_cell[cell]), ha="center", va="center", fontsize=9, clip_on=True)
     axes.set(xlim=(-reach, reach), ylim=(-reach, reach), aspect="equal", xticks=[], yticks=[])
-    axes.set_title(f"{name}\n{place_in_words(*np.degrees(view))}", fontsize=10)
+    axes.set_title(f"{name}\n{paper.place_in_words(worst)}", fontsize=10)
     return axes
-
-
-def place_in_words(longitude: float, latitude: float) -> str:
-    """Longitude and latitude, degrees, to a tenth."""
-    return f"{longitude:.1f}°E {abs(latitude):.1f}°{'N' if latitude >= 0.0 else 'S'}"
 
 
 def _name(member: Member, members: Sequence[Member]) -> str:
@@ -106,9 +101,11 @@ def _panel_for_each(
     return figure, list(zip(grid, compared, strict=False))
 
 
-def _wrapped(heading: str, figure: Figure) -> str:
-    """A heading in lines that are not wider than the figure."""
-    return textwrap.fill(heading, int(LETTERS_PER_INCH * figure.get_figwidth()))
+def _write_heading(figure: Figure, heading: str) -> None:
+    """Write a heading in lines that are not wider than the figure, which has room for two and grows for more."""
+    lines = textwrap.wrap(heading, int(LETTERS_PER_INCH * figure.get_figwidth()))
+    figure.set_figheight(figure.get_figheight() + LINE_HEIGHT * max(0, len(lines) - 2))
+    figure.suptitle("\n".join(lines))
 
 
 def _colours(error: Array) -> dict:
@@ -123,17 +120,10 @@ def _colour_bar(figure: Figure, axes: Axes) -> None:
     bar.ax.tick_params(labelsize=9)
 
 
-def _on_map(member: Member, cells: Sequence[int] | Index) -> tuple[Array, Array]:
-    """Coordinates of cells on the Mollweide map."""
-    longitude = about_zero(member.mesh.lon_cell[cells] - CENTRAL_LONGITUDE)
-    x, y = mollweide(longitude, member.mesh.lat_cell[cells]).T
-    return x, y
-
-
-def _mark_irregular_cells(axes: Axes, member: Member) -> None:
+def _mark_irregular_cells(axes: Axes, paper: Paper, member: Member) -> None:
     sides = member.mesh.n_edges_on_cell
     if np.count_nonzero(sides != 6) > MOST_DOTS:
         return
     for count, colour in IRREGULAR_COLOURS.items():
         cells = np.flatnonzero(sides == count)
-        axes.plot(*_on_map(member, cells), ".", color=colour, markersize=3)
+        axes.plot(*paper.spots(cells), ".", color=colour, markersize=3)

@@ -8,7 +8,7 @@ import pytest
 
 from cases import Williamson2
 from mesh import scvt_mesh
-from postprocess.figures import compare_maps
+from postprocess.figures import compare_maps, paper
 from swe import Simulation
 from tests.trisk.conftest import Call
 
@@ -17,8 +17,8 @@ from tests.trisk.conftest import Call
 def compare(trisk: Call, monkeypatch: pytest.MonkeyPatch) -> Call:
     """Run `trisk compare`, drawing small maps of thickness alone."""
     monkeypatch.setattr(compare_maps, "MAP_FIELDS", {"thickness": compare_maps.MAP_FIELDS["thickness"]})
-    monkeypatch.setattr(compare_maps, "ROWS", 20)
-    monkeypatch.setattr(compare_maps, "COLUMNS", 40)
+    monkeypatch.setattr(paper, "ROWS", 20)
+    monkeypatch.setattr(paper, "COLUMNS", 40)
     return partial(trisk, "compare")
 
 

@@ -13,10 +13,10 @@ def cells_to_divide(file: Path, recompute_metrics: bool) -> tuple[CellGraph, Vor
     """The graph of the cells of a file, and what a map of them is drawn from.
 
     That is the mesh, validated; of a large one, whose cells are drawn by pixels, only generators and triangles are read
-    and checked. There is no map of a plane.
+    and checked, and there is no map of a plane.
     """
     if count_cells(file) > MOST_POLYGONS:
         graph, points = read_cells(file)
         return graph, points if points[:, 2].any() else None
     mesh = read_mesh(file, recompute_metrics)
-    return cell_graph(mesh), mesh if mesh.on_a_sphere else None
+    return cell_graph(mesh), mesh

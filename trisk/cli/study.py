@@ -25,7 +25,20 @@ def mesh(
     ] = None,
     cells: Annotated[
         list[int] | None,
-        typer.Option("--cells", help="Number of cells, 10*4^k+2, repeatable; by default 642, 2562, 10242."),
+        typer.Option(
+            "--cells",
+            help="Number of cells, 10*4^k+2, repeatable; by default 642, 2562, 10242. On a plane about so many; by "
+            "default 576, 2304, 9216.",
+        ),
+    ] = None,
+    plane: Annotated[
+        str | None,
+        typer.Option(
+            "--plane", metavar="LX,LY", help="Lengths of the plane, m; by default x_length and y_length of the case."
+        ),
+    ] = None,
+    periodic: Annotated[
+        str | None, typer.Option("--periodic", help="Where the plane repeats itself: xy (default), x or none.")
     ] = None,
     days: Annotated[
         float | None, typer.Option("--days", help="Simulated days; by default what the paper recommends.")
@@ -47,17 +60,21 @@ def mesh(
     from postprocess.studies.families import FAMILIES
     from postprocess.studies.lines import chosen_schemes
     from postprocess.studies.mesh_study import Plan, carry_out
+    from postprocess.studies.plane_families import PLANE_CELLS, plane_of_study
+    from trisk.arguments.pairs import pair_of
 
     chosen = find_case(case, split_settings(settings or ()))
     days = chosen.recommended_days if days is None else days
+    on_plane = plane_of_study(chosen, None if plane is None else pair_of("--plane", plane), periodic)
     plan = Plan(
         output,
         chosen,
         days,
         days if error_day is None else error_day,
-        tuple(families or FAMILIES),
-        tuple(cells or (642, 2562, 10242)),
+        tuple(families or (FAMILIES if on_plane is None else on_plane.families)),
+        tuple(cells or ((642, 2562, 10242) if on_plane is None else PLANE_CELLS)),
         chosen_schemes(schemes),
+        on_plane,
     )
     tell = _teller(quiet)
     finest, rows = carry_out(plan, not quiet, tell)

@@ -25,8 +25,7 @@ def partition(
 ) -> None:
     """Divide a mesh into connected blocks with METIS.
 
-    Writes graph.info and graph.info.part.N as MPAS reads them, and a map of the blocks on a sphere, and prints how good
-    they are.
+    Writes graph.info and graph.info.part.N as MPAS reads them, and a map of the blocks, and prints how good they are.
     """
     from mesh.files.partition_files import read_weights, write_partition
     from mesh.partition.measures import measure_partition

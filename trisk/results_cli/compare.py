@@ -35,7 +35,7 @@ def compare(
 ) -> None:
     """Compare runs with a solution or with each other.
 
-    Prints what was found, error norms and conservation, and draws maps where the runs are on a sphere.
+    Prints what was found, error norms and conservation, and draws maps.
     """
     from postprocess.compare.comparison import compare_runs, comparison_record
     from postprocess.figures.compare_maps import write_maps
@@ -51,7 +51,7 @@ def compare(
     if not as_json:
         print_verdict(report.verdict)
         print_comparison(comparison)
-    maps = write_maps(comparison, folder) if comparison.compared[0].mesh.on_a_sphere else []
+    maps = write_maps(comparison, folder)
     written = list(maps)
     if output is not None:
         written.append(report.write(maps, output, ["trisk", *sys.argv[1:]]))

@@ -7,6 +7,8 @@ import typer
 
 from trisk.cli.options import Quiet
 
+USUAL_CENTRE = "270,0"
+
 
 def film(
     run_directory: Annotated[Path, typer.Argument(help="Directory that a run wrote.")],
@@ -17,8 +19,14 @@ def film(
         typer.Option("--projection", help="By default the first, or the second with a centre off the equator."),
     ] = None,
     centre: Annotated[
-        str, typer.Option("--centre", metavar="LONGITUDE,LATITUDE", help="Middle of the map, degrees.")
-    ] = "270,0",
+        str | None,
+        typer.Option(
+            "--centre",
+            metavar="LONGITUDE,LATITUDE",
+            help="Middle of the map, degrees; planes have none.",
+            show_default=USUAL_CENTRE,
+        ),
+    ] = None,
     days: Annotated[
         str | None, typer.Option("--days", metavar="FIRST,LAST", help="First and last day; by default all days.")
     ] = None,
@@ -31,6 +39,7 @@ def film(
 
     MP4 needs the extra 'film'; GIF does not.
     """
+    from postprocess.figures.field_map import MIDDLE
     from postprocess.film.film import film as write_film
     from postprocess.runs.folders import require_possible_file
     from postprocess.runs.reading import open_run
@@ -40,8 +49,9 @@ def film(
     require_possible_file(output)
     asked_days = None if days is None else pair_of("--days", days)
     width, height = pair_of("--size", size, whole=True)
-    middle = pair_of("--centre", centre)
+    asked_middle = None if centre is None else pair_of("--centre", centre)
     with open_run(run_directory) as run, bars_of_parts(not quiet) as progress:
+        usual = pair_of("--centre", USUAL_CENTRE) if run.mesh.on_a_sphere else MIDDLE
         write_film(
             run,
             field,
@@ -49,7 +59,7 @@ def film(
             days=asked_days,
             size=(int(width), int(height)),
             projection=projection,
-            centre=middle,
+            centre=asked_middle or usual,
             progress=progress,
         )
     if not quiet:

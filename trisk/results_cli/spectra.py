@@ -18,7 +18,7 @@ def spectra(
 ) -> None:
     """Write and draw spectra of energy and potential enstrophy.
 
-    The energy is kinetic energy; wavenumbers are total wavenumbers.
+    The energy is kinetic energy; wavenumbers are total wavenumbers, on periodic planes waves in the longer period.
     """
     from postprocess.figures.spectra_figure import write_spectra_of
     from postprocess.runs.reading import read_run

@@ -19,7 +19,7 @@ from postprocess.compare import solutions
 from postprocess.compare.comparison import compare_runs, comparison_record, fields_on
 from postprocess.compare.norms import Norms, scalar_norms, vector_norms
 from postprocess.compare.solutions import ExactSolution, RunSolution
-from postprocess.figures import compare_maps
+from postprocess.figures import compare_maps, paper
 from postprocess.figures.palettes import colours_for, deviation_colours
 from postprocess.reference import stored_references
 from postprocess.runs.reading import open_run, read_run
@@ -349,8 +349,8 @@ def test_record_is_json_without_nan(runs: Path) -> None:
 
 
 def test_maps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    monkeypatch.setattr(compare_maps, "ROWS", 45)
-    monkeypatch.setattr(compare_maps, "COLUMNS", 90)
+    monkeypatch.setattr(paper, "ROWS", 45)
+    monkeypatch.setattr(paper, "COLUMNS", 90)
     monkeypatch.setattr(compare_maps, "DOTS_PER_INCH", 40)
     comparison = compare_runs(Path("mountain-162"), Path("mountain-642"), reference="mountain-162")
     paths = compare_maps.write_maps(comparison, tmp_path / "maps")
@@ -364,7 +364,7 @@ def test_maps(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 
 
 def test_maps_have_one_scale_and_say_what_it_is() -> None:
-    x = np.linspace(-1.0, 3.0, compare_maps.ROWS * compare_maps.COLUMNS)
+    x = np.linspace(-1.0, 3.0, paper.ROWS * paper.COLUMNS)
     panels = [x, x - 7.0, 0 * x]
     scales = (colours_for("thickness", [panel + 9.0 for panel in panels]), deviation_colours(panels))
     for colours, limits in zip(scales, [(1.0, 12.0), (-8.0, 8.0)], strict=True):

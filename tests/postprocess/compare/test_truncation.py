@@ -14,7 +14,7 @@ import pytest
 
 from mesh import VoronoiMesh, scvt_mesh
 from mesh.geometry.sphere import dot
-from postprocess.compare import truncation
+from postprocess.compare.sphere_flow import SphereFlow
 from postprocess.compare.truncation import TruncationErrors, apply_operators, truncation_errors
 
 BANDS = {
@@ -68,9 +68,9 @@ def test_error_fields_live_where_the_results_do(icosahedral_mesh: VoronoiMesh) -
 
 
 def test_flow_is_tangential_and_its_parts_are_about_as_strong() -> None:
-    points = np.random.default_rng(1).normal(size=(2000, 3))
+    flow, points = SphereFlow(), np.random.default_rng(1).normal(size=(2000, 3))
     points /= np.linalg.norm(points, axis=1)[:, None]
-    velocity = truncation.velocity(points)
+    velocity = flow.velocity(points)
     assert np.abs(dot(velocity, points)).max() < 1e-14
-    sizes = [np.sqrt(np.mean(part(points) ** 2)) for part in (truncation.vorticity, truncation.divergence)]
+    sizes = [np.sqrt(np.mean(part(points) ** 2)) for part in (flow.vorticity, flow.divergence)]
     assert 0.2 < sizes[1] / sizes[0] < 5.0

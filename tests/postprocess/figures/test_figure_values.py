@@ -10,8 +10,9 @@ from matplotlib.figure import Figure
 
 from cases import Williamson5
 from mesh import scvt_mesh
-from postprocess.figures.compare_maps import COLUMNS, ROWS, map_figure
+from postprocess.figures.compare_maps import map_figure
 from postprocess.figures.palettes import Colours, colours_for, deviation_colours
+from postprocess.figures.paper import COLUMNS, ROWS
 from postprocess.figures.plots import plot_run
 from postprocess.runs.reading import read_run
 from swe import Simulation

@@ -3,9 +3,10 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from postprocess.figures.compare_maps import COLUMNS, ROWS, map_figure
+from postprocess.figures.compare_maps import map_figure
 from postprocess.figures.maps import draw_mollweide_raster
 from postprocess.figures.palettes import colours_for
+from postprocess.figures.paper import COLUMNS, ROWS
 
 
 def test_latitudes_stand_beside_the_rim_and_longitudes_have_a_halo() -> None:

@@ -12,7 +12,8 @@ from postprocess.figures.spectra_figure import spectra_figure
 def spectra(name: str, count: int, factor: float) -> Any:
     falling = factor * np.arange(1.0, count + 1.0) ** -3.0
     run = SimpleNamespace(case="williamson5")
-    return SimpleNamespace(run=run, name=name, kinetic_energy=falling, potential_enstrophy=1e-9 * falling)
+    words = {"name": name, "wavenumber_in_words": "total wavenumber"}
+    return SimpleNamespace(run=run, **words, kinetic_energy=falling, potential_enstrophy=1e-9 * falling)
 
 
 def test_lines_are_the_spectra_from_wavenumber_one_on_and_the_slopes_of_turbulence() -> None:

@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from mesh import VoronoiMesh, cull_mesh, find_region, scvt_mesh
 from mesh.geometry.sphere import from_lonlat
+from mesh.geometry.surface import surface_of
 from postprocess.figures.field_map import plot_field
 from postprocess.figures.projections import orthographic
 from postprocess.film.stencil import Stencil, stencil_of
@@ -65,3 +66,24 @@ def test_land_stays_grey(coarse_mesh: VoronoiMesh) -> None:
     row = int(SIZE * (1.05 - z[0]) / 2.2)
     assert (picture[row, columns[0]] == 204).all()
     assert (picture[row, columns[1]] == 0).all()
+
+
+def test_pixels_of_a_plane_show_the_cell_with_the_nearest_image(any_plane: VoronoiMesh) -> None:
+    mesh = any_plane
+    axes = Figure(figsize=(SIZE / 100.0, SIZE / 100.0), dpi=100.0).add_axes((0.0, 0.0, 1.0, 1.0))
+    plot_field(mesh, np.arange(float(mesh.n_cells)), axes, colour_bar=False)
+    axes.get_figure().draw_without_rendering()
+    rows, columns = np.random.default_rng(2).integers(0, SIZE, (2, 400))
+    points = axes.transData.inverted().transform(np.stack([columns + 0.5, SIZE - rows - 0.5], axis=1))
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
+    if mesh.y_period == 0.0:  # beyond walls nothing is shown
+        bottom, top = mesh.y_cell.min(), mesh.y_cell.max()
+    if mesh.x_period == 0.0:
+        left, right = mesh.x_cell.min(), mesh.x_cell.max()
+    there = np.all((points > (left, bottom)) & (points < (right, top)), axis=1)
+    ways = surface_of(mesh).shortest(mesh.cell_points[None] - np.pad(points, ((0, 0), (0, 1)))[:, None])
+    distances = np.linalg.norm(ways, axis=-1)
+    shown = stencil_of(axes).shown[rows, columns]
+    pixel = np.hypot(right - left, top - bottom) / SIZE
+    assert there.sum() > 150
+    assert np.all((distances[np.arange(400), shown] < distances.min(axis=1) + pixel)[there])

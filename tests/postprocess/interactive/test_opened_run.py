@@ -1,5 +1,6 @@
 """`open_run(...)`: maps of a run, and its grid."""
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from mesh import VoronoiMesh, write_mesh
 from postprocess import open_run
 from swe.errors import InputError
 
@@ -68,3 +70,24 @@ def test_without_uxarray_a_sentence_names_the_command(mountain_run: Path, monkey
     monkeypatch.setitem(sys.modules, "uxarray", None)
     with pytest.raises(InputError, match=r"uxarray, .*; install it with pip install 'trisk\[uxarray\]'$"):
         _ = open_run(mountain_run).grid
+
+
+def test_a_run_on_a_plane_is_drawn_and_shown(ax: Axes, plane_run: Path) -> None:
+    with open_run(plane_run) as run:
+        drawn = run.plot("relative_vorticity", day=0.01, ax=ax, region=(9e5, 11e5, 0.0, 1e5))
+        assert (drawn.get_xlim(), drawn.get_ylabel()) == ((9e5, 11e5), "y (km)")
+        assert "day 0.01" in drawn.get_title()
+        np.testing.assert_array_equal(run.data["thickness"][-1], run.last_snapshot().fields["thickness"])
+        assert "coast" not in repr(run)
+
+
+def test_walls_of_a_plane_are_told_without_a_sphere(plane_run: Path, channel: VoronoiMesh, tmp_path: Path) -> None:
+    directory = shutil.copytree(plane_run, tmp_path / "run")
+    (directory / "mesh.nc").unlink()
+    write_mesh(channel, directory / "mesh.nc")
+    assert "coast: walls" in repr(open_run(directory))
+
+
+def test_grids_of_uxarray_are_of_spheres(plane_run: Path) -> None:
+    with pytest.raises(InputError, match=r"mesh.nc is a mesh on a plane, and grids of uxarray are on spheres alone"):
+        _ = open_run(plane_run).grid
