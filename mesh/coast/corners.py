@@ -1,13 +1,14 @@
 """Corners and sides of clipped cells: what of their rings a mesh keeps.
 
-Corners are circumcentres and crossings of the coast; the points of the coast between two crossings are no corners, so
-that a cell's portion of the coast is one side.
+Corners are circumcentres and crossings of the coast; other points of the coast are no corners, so that a cell's portion
+of the coast is one side, but for those that the coast says are `Coast.corners`.
 """
 
 from dataclasses import dataclass
 
 import numba
 import numpy as np
+from numpy.typing import NDArray
 
 from mesh.arrays import Index
 from mesh.coast.crossings import neighbour_across
@@ -45,7 +46,7 @@ def corners_of(sea: SeaCells) -> Corners:
         raise _too_coarse(f"cell {number} is in several parts or goes round an island")
     starts = np.empty(sea.n_cells + 1, np.int32)
     places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
-    crossings = sea.crossing_cells, sea.n_triangles, sea.n_triangles + sea.n_coast
+    crossings = sea.crossing_cells, sea.coastline.corners, sea.n_triangles, sea.n_triangles + sea.n_coast
     count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
     sizes = np.diff(starts)
     corners = Corners(
@@ -72,6 +73,7 @@ def _fill_corners(
     rings: Index,
     triangles: Index,
     crossing_cells: Index,
+    coast_corners: NDArray[np.bool_],
     n_triangles: int,
     after_coast: int,
     starts: Index,
@@ -87,7 +89,9 @@ def _fill_corners(
             if place < n_triangles:
                 neighbours[count] = neighbour_across(triangles, place, cell)
             elif place < after_coast:
-                continue
+                if not coast_corners[place - n_triangles]:
+                    continue
+                neighbours[count] = COAST
             else:
                 entered = crossing_cells[place - after_coast, 1]
                 neighbours[count] = COAST if entered == cell else entered
