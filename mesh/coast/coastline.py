@@ -45,6 +45,10 @@ class Coast(Protocol):
     def corners(self) -> NDArray[np.bool_]:
         """Which of its points (m,) are vertices of a mesh; at others an edge of the coast bends."""
 
+    @property
+    def wider(self) -> str:
+        """What to ask for where cells are too large for it, in words."""
+
     def contains(self, points: Array) -> NDArray[np.bool_]:
         """Whether points (n, 3) lie in the sea."""
 
@@ -65,6 +69,7 @@ class Coastline:
     """
 
     surface: Surface = UNIT_SPHERE
+    wider = "a smoother coast"
 
     def __init__(self, rings: Sequence[Array]) -> None:
         """Take rings (m_r, 3) of unit vectors, without repetition of the first point.

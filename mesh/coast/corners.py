@@ -43,7 +43,7 @@ def corners_of(sea: SeaCells) -> Corners:
     """
     number = int(np.argmax(sea.loops > 1))
     if sea.loops[number] > 1:
-        raise _too_coarse(f"cell {number} is in several parts or goes round an island")
+        raise _too_coarse(sea, f"cell {number} is in several parts or goes round an island")
     starts = np.empty(sea.n_cells + 1, np.int32)
     places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
     crossings = sea.crossing_cells, sea.coastline.corners, sea.n_triangles, sea.n_triangles + sea.n_coast
@@ -53,10 +53,10 @@ def corners_of(sea: SeaCells) -> Corners:
         starts, places[:count], neighbours[:count], np.repeat(np.arange(sea.n_cells, dtype=np.int32), sizes)
     )
     if max(corners.neighbours.max(), sea.crossing_cells.max(initial=0)) >= sea.n_cells:
-        raise _too_coarse("some sea lies farther from all generators than from points on land")
+        raise _too_coarse(sea, "some sea lies farther from all generators than from points on land")
     if sizes.min() < FEWEST_SIDES:
-        raise _too_coarse(f"cell {np.argmin(sizes)} has {sizes.min()} sides")
-    _require_one_side_each(corners, sea.n_cells)
+        raise _too_coarse(sea, f"cell {np.argmin(sizes)} has {sizes.min()} sides")
+    _require_one_side_each(corners, sea)
     return corners
 
 
@@ -101,15 +101,15 @@ def _fill_corners(
     return count
 
 
-def _require_one_side_each(corners: Corners, n_cells: int) -> None:
+def _require_one_side_each(corners: Corners, sea: SeaCells) -> None:
     """Raise `MeshError` where a cell meets a neighbour along several sides."""
     inner = corners.neighbours != COAST
-    pairs = corners.cells[inner].astype(np.int64) * n_cells + corners.neighbours[inner]
+    pairs = corners.cells[inner].astype(np.int64) * sea.n_cells + corners.neighbours[inner]
     found, counts = np.unique(pairs, return_counts=True)
     if counts.max() > 1:
-        cell, other = divmod(int(found[np.argmax(counts)]), n_cells)
-        raise _too_coarse(f"cells {cell} and {other} meet on both sides of some land")
+        cell, other = divmod(int(found[np.argmax(counts)]), sea.n_cells)
+        raise _too_coarse(sea, f"cells {cell} and {other} meet on both sides of some land")
 
 
-def _too_coarse(what: str) -> MeshError:
-    return MeshError(f"{what}: ask for more cells, or for a smoother coast")
+def _too_coarse(sea: SeaCells, what: str) -> MeshError:
+    return MeshError(f"{what}: ask for more cells, or for {sea.coastline.wider}")

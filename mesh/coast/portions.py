@@ -83,7 +83,7 @@ def _require_each_ends_once(portions: Portions, sea: SeaCells, cells: Index) -> 
         place = np.concatenate([sea.n_triangles + sea.n_coast + np.arange(sea.n_crossings), _corners(sea)])[first]
         raise MeshError(
             f"the coast enters cell {cells[first, 1]} at {sea.coastline.surface.in_words(sea.circumcenters[place])} "
-            "and does not leave it once; ask for another number of cells, or for a smoother coast"
+            f"and does not leave it once; ask for another number of cells, or for {sea.coastline.wider}"
         )
 
 

@@ -25,6 +25,7 @@ class Walls:
     """
 
     surface: Surface = Plane(0.0, 0.0)
+    wider = "a polygon without such narrow parts"
 
     def __init__(self, rings: Sequence[Array], cells: int) -> None:
         """Take rings (m_r, 3), without repetition of points, the one round the polygon and those of its holes."""
