@@ -21,11 +21,11 @@ ROUND_OFF = 1e-12
 def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> VoronoiMesh:
     """The validated mesh, on the unit sphere or in a plane, of the clipped cells that `sea` has.
 
-    These are the cells of `generators` (n_cells, 3). A cell's portion of the coast is one edge without a second cell. Its point is that of the coast which is nearest to
-    the generator, its `dc_edge` twice the distance to there, as if another generator stood as far behind the coast, and
-    its `dv_edge` the arc between its ends. Areas of cells are those of the clipped cells, with all bends of the coast.
-    Raises `MeshError` where a generator stands on land or on the coast itself, or where cells and coast are too
-    intricate for such a mesh.
+    These are the cells of `generators` (n_cells, 3). A cell's portion of the coast is one edge without a second cell.
+    Its point is that of the coast which is nearest to the generator, its `dc_edge` twice the distance to there, as if
+    another generator stood as far behind the coast, and its `dv_edge` the arc between its ends. Areas of cells are
+    those of the clipped cells, with all bends of the coast. Raises `MeshError` where a generator stands on land or on
+    the coast itself, or where cells and coast are too intricate for such a mesh.
     """
     on_land = np.flatnonzero(~sea.coastline.contains(generators))
     if len(on_land):

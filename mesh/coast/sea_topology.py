@@ -13,8 +13,8 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
     """The connectivity, and the places (n_vertices,) of its vertices among `SeaCells.circumcenters`.
 
     At a vertex on the coast meet the cell that the coast enters there, the cell that it leaves, and no third one; the
-    edge between them and two edges of the coast. At a corner of the coast itself there is one cell. Vertices and edges are numbered after their lowest cells. Raises
-    `MeshError` as `corners_of` does.
+    edge between them and two edges of the coast. At a corner of the coast itself there is one cell. Vertices and edges
+    are numbered after their lowest cells. Raises `MeshError` as `corners_of` does.
     """
     corners = corners_of(sea)
     places, cells_on_vertex, vertex_of = _vertices(sea, corners)

@@ -5,7 +5,6 @@ from collections.abc import Sequence
 from functools import partial
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mesh.arrays import Array
 from mesh.coast.sea_cells import SeaCells, SeaResult
@@ -19,14 +18,14 @@ from mesh.mesh_request import MeshRequest
 from mesh.plane.domain import Rectangle
 from mesh.plane.generation import require_possible_on_plane
 from mesh.polygon.lifted import LiftedCells, Lifting
-from mesh.polygon.rings import checked_rings
+from mesh.polygon.rings import Points, checked_rings
 from mesh.polygon.starts import starting_points
 from mesh.polygon.walls import Walls
 from mesh.voronoi_mesh import VoronoiMesh
 
 
 def polygon_mesh(
-    rings: Sequence[ArrayLike], request: MeshRequest, callback: Callback | None = None, name: str = "the polygon"
+    rings: Sequence[Points], request: MeshRequest, callback: Callback | None = None, name: str = "the polygon"
 ) -> VoronoiMesh:
     """The validated centroidal Voronoi mesh of a polygon in the plane that the `request` describes.
 

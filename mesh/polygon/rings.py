@@ -5,13 +5,15 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from mesh.arrays import Array
 from mesh.errors import MeshError
 from mesh.plane.domain import Rectangle
 from mesh.regions.optional import package_for_coasts
 from mesh.regions.polygons import polygons_in
+
+Points = Array | Sequence[Sequence[float]]
+"""Rows or lists of x and y."""
 
 FEWEST_POINTS = 3
 
@@ -27,7 +29,7 @@ def read_rings(path: Path) -> list[Any]:
     return polygons[0]
 
 
-def checked_rings(rings: Sequence[ArrayLike], plane: Rectangle, name: str = "the polygon") -> list[Array]:
+def checked_rings(rings: Sequence[Points], plane: Rectangle, name: str = "the polygon") -> list[Array]:
     """The rings (m, 3) of a polygon, z = 0, with its inside to their left: the one round it, then those of its holes.
 
     `rings` (m, 2) are in metres, in either direction, and may repeat their first point at the end; more numbers of a
@@ -47,10 +49,10 @@ def checked_rings(rings: Sequence[ArrayLike], plane: Rectangle, name: str = "the
     return [np.column_stack([ring, np.zeros(len(ring))]) for ring in turned]
 
 
-def _points(ring: ArrayLike, name: str) -> Array:
+def _points(ring: Points, name: str) -> Array:
     """The points (m, 2) of a ring, the first one not repeated."""
     try:
-        points = np.array([position[:2] for position in np.asarray(ring, float)]).reshape(-1, 2)
+        points = np.array([position[:2] for position in ring], float).reshape(-1, 2)
     except (TypeError, ValueError, IndexError) as error:
         raise MeshError(f"{name} is no list of points ({error}); give x and y of each, in metres") from error
     if len(points) > 1 and (points[0] == points[-1]).all():

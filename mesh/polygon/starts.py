@@ -33,7 +33,7 @@ def starting_points(
 def _box(walls: Walls) -> tuple[Rectangle, Array]:
     """The smallest rectangle round the polygon, and its corner (3,) in the south-west."""
     low, high = walls.points.min(axis=0), walls.points.max(axis=0)
-    return Rectangle(*(high - low)[:2].tolist(), "none"), low
+    return Rectangle(float(high[0] - low[0]), float(high[1] - low[1]), "none"), low
 
 
 def _rows(walls: Walls, cells: int) -> Array:

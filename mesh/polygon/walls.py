@@ -76,7 +76,7 @@ class Walls:
 
 @numba.njit(parallel=True, cache=True, fastmath=False)
 def _signed_distances(points: Array, walls: Array, following: Index, distances: Array) -> None:
-    """Write the distances of points (n, 3) from all walls; inside, a ray along x crosses them an odd number of times."""
+    """Write the distances of points (n, 3) from all walls; from inside, a ray along x crosses an odd number of them."""
     for row in numba.prange(len(points)):
         x, y = points[row, 0], points[row, 1]
         least, sign = np.inf, -1.0

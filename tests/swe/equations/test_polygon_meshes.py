@@ -19,6 +19,7 @@ class Hump(PlaneCase):
     """Water that is higher in a corner, at rest."""
 
     height: float = 100.0
+    name = "hump"
     title = "a hump in a corner"
     recommended_days = 1.0
 
