@@ -22,6 +22,7 @@ from mesh.parts.sea_cells import cull_mesh
 from mesh.plane.generation import mesh_on_plane
 from mesh.plane.hexagons import hexagon_mesh
 from mesh.plane.periodic import periodic_mesh
+from mesh.polygon.generation import polygon_mesh
 from mesh.regions.find import find_region
 from mesh.regions.region import Region
 from mesh.voronoi_mesh import VoronoiMesh
@@ -45,6 +46,7 @@ __all__ = [
     "normal_component",
     "partition_mesh",
     "periodic_mesh",
+    "polygon_mesh",
     "read_mesh",
     "region_mesh",
     "scvt_mesh",

@@ -25,6 +25,7 @@ ROOMS = {
         "generation",
         "coast",
         "plane",
+        "polygon",
         "files",
     ],
     "swe": ["", "parallel", "equations", "forcing", "tiles", "damping", "diagnostics", "stepping", "output", "run"],

@@ -12,6 +12,7 @@ _PLACES = {
             "normal_component",
             "partition_mesh",
             "periodic_mesh",
+            "polygon_mesh",
             "read_mesh",
             "region_mesh",
             "scvt_mesh",

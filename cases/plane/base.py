@@ -23,7 +23,7 @@ class PlaneCase(Case):
 
     It is a `Case` whose positions are x and y, in metres, in the place of longitude and latitude; its radius is zero.
     A case must define `thickness`, `velocity`, `vorticity`, `title` and `recommended_days`. Its velocity need not come
-    from a streamfunction, and so is given at the middles of edges.
+    from a streamfunction; on a mesh it is the mean over each Voronoi edge, or what the case makes of it.
     """
 
     _bounded: ClassVar[tuple[str, ...]] = ("gravity",)

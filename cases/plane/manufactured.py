@@ -10,7 +10,7 @@ from cases.base import parameter
 from cases.plane.base import PlaneCase
 from cases.plane.lengths import require_periods
 from mesh.arrays import Array
-from mesh.integrals.quadrature import normal_means
+from mesh.discrete.operators import normal_component
 from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.terms import Forcing
 from swe.state import State
@@ -94,11 +94,18 @@ class Manufactured(PlaneCase):
         across = self.speed * (w * (waves.sin_cos - waves.cos_sin) - u * k * waves.sin_cos - v * l * waves.cos_sin)
         return along - f * v + pressure * k * waves.sin_cos, across + f * u + pressure * l * waves.cos_sin
 
+    def normal_velocity_on(self, mesh: VoronoiMesh, time: float) -> Array:
+        """Velocity at `time` along the normals of edges (n_edges,), m/s: that at the midpoints between cells.
+
+        There the gradient of the model and the forcing are, which make this flow.
+        """
+        return normal_component(mesh, *self.evaluated_velocity(time)(*mesh.coordinates("edge")))
+
     def terms(self) -> tuple[Forcing, ...]:
-        """The forcing: means over edges, as the velocity has, and values at the centres of cells."""
+        """The forcing, at the midpoints between cells and the centres of cells."""
 
         def acceleration(mesh: VoronoiMesh, state: State, time: float) -> Array:
-            return normal_means(mesh, lambda x, y: self.acceleration(x, y, time))
+            return normal_component(mesh, *self.acceleration(*mesh.coordinates("edge"), time))
 
         def source(mesh: VoronoiMesh, state: State, time: float) -> Array:
             return self.source(*mesh.coordinates("cell"), time)

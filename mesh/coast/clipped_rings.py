@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index
-from mesh.coast.crossings import neighbour_across
-from mesh.geometry.vectors import cross_product, dot_product, vector_to
+from mesh.coast.crossings import from_middle, neighbour_across
+from mesh.geometry.vectors import cross_product, dot_product, outward, vector_between, vector_to
 
 
 @numba.njit(cache=True)
@@ -44,13 +44,15 @@ def _side(triangles: Index, corners: Index, cell: int, other: int) -> int:
 
 
 @numba.njit(cache=True)
-def _along(points: Array, cell: int, other: int, places: Array, place: int) -> float:
+def _along(points: Array, cell: int, other: int, is_flat: bool, places: Array, place: int) -> float:
     """How far along the side of a cell with another one a place lies, counter-clockwise round the cell.
 
     Seen from the other cell it is the same number with the opposite sign, to the last bit: both find the same order.
     """
-    onward = cross_product(vector_to(points, cell), vector_to(points, other))
-    return dot_product(onward, vector_to(places, place))
+    # On the sphere p x (q - p) is p x q, but not to the last bit.
+    away = vector_between(points, cell, points, other) if is_flat else vector_to(points, other)
+    onward = cross_product(outward(points, cell, is_flat), away)
+    return dot_product(onward, from_middle(vector_to(places, place), points, cell, other, is_flat))
 
 
 @numba.njit(cache=True)
@@ -85,6 +87,7 @@ def _next_entry(
     triangles: Index,
     corners: Index,
     cell: int,
+    is_flat: bool,
     places: Array,
     after_coast: int,
     cells: Index,
@@ -102,13 +105,13 @@ def _next_entry(
     """
     size, beyond = len(corners), cells[leaving, 1]
     side = _side(triangles, corners, cell, beyond)
-    here = _along(points, cell, beyond, places, after_coast + leaving)
+    here = _along(points, cell, beyond, is_flat, places, after_coast + leaving)
     entering, fewest, lowest = begun, size + 1, np.inf
     portion = first_portion[cell]
     while portion >= 0:
         if portion < len(cells) and (portion == begun or not visited[portion]):
             before = cells[portion, 0]
-            at = _along(points, cell, before, places, after_coast + portion)
+            at = _along(points, cell, before, is_flat, places, after_coast + portion)
             passed = (_side(triangles, corners, cell, before) - side) % size
             if passed == 0 and at < here:
                 passed = size
@@ -124,6 +127,7 @@ def fill_clipped_rings(
     ring_starts: Index,
     rings: Index,
     triangles: Index,
+    is_flat: bool,
     places: Array,
     n_triangles: int,
     coast_starts: Index,
@@ -182,6 +186,7 @@ def fill_clipped_rings(
                         triangles,
                         corners,
                         cell,
+                        is_flat,
                         places,
                         after_coast,
                         cells,

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from scipy.spatial import cKDTree
 from mesh.arrays import Array, Index
 from mesh.errors import MeshError
 from mesh.geometry.sphere import dot, normalize, triangle_area
+from mesh.geometry.surface import UNIT_SPHERE, Surface
 
 NEAREST_VERTICES = 8
 """Vertices of the coast, near a point, whose arcs are tried for the one that is nearest to it."""
@@ -17,11 +19,57 @@ NEAREST_VERTICES = 8
 FEWEST_VERTICES = 3
 
 
+class Coast(Protocol):
+    """What clips cells: closed rings of straight arcs, or of straight lines in the plane, the sea to their left.
+
+    Ring r has the points `ring_starts[r]` to `ring_starts[r + 1] - 1`.
+    """
+
+    @property
+    def surface(self) -> Surface:
+        """What it lies on."""
+
+    @property
+    def points(self) -> Array:
+        """Its points (m, 3)."""
+
+    @property
+    def ring_starts(self) -> Index:
+        """Where each ring begins (n_rings + 1,)."""
+
+    @property
+    def n_rings(self) -> int:
+        """Number of closed rings."""
+
+    @property
+    def corners(self) -> NDArray[np.bool_]:
+        """Which of its points (m,) are vertices of a mesh; at others an edge of the coast bends."""
+
+    @property
+    def wider(self) -> str:
+        """What to ask for where cells are too large for it, in words."""
+
+    def contains(self, points: Array) -> NDArray[np.bool_]:
+        """Whether points (n, 3) lie in the sea."""
+
+
+def joined_rings(rings: Sequence[Array]) -> tuple[Array, Index, Index]:
+    """The points (m, 3) of all rings, where each ring begins (n_rings + 1,), and the next point (m,) of its ring."""
+    points = np.concatenate([np.asarray(ring, np.float64) for ring in rings])
+    ring_starts = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]).astype(np.int32)
+    following = np.arange(1, len(points) + 1, dtype=np.int32)
+    following[ring_starts[1:] - 1] = ring_starts[:-1]
+    return points, ring_starts, following
+
+
 class Coastline:
     """Closed rings of arcs between `points` (m, 3), unit vectors; the sea, a connected part of the sphere, to the left.
 
     Ring r has the points `ring_starts[r]` to `ring_starts[r + 1] - 1`; `following` (m,) is the next point of the ring.
     """
+
+    surface: Surface = UNIT_SPHERE
+    wider = "a smoother coast"
 
     def __init__(self, rings: Sequence[Array]) -> None:
         """Take rings (m_r, 3) of unit vectors, without repetition of the first point.
@@ -35,10 +83,8 @@ class Coastline:
                 raise MeshError(
                     f"ring {number} of the coast has {len(ring)} points; give at least {FEWEST_VERTICES}, all finite"
                 )
-        self.points = normalize(np.concatenate([np.asarray(ring, np.float64) for ring in rings]))
-        self.ring_starts: Index = np.concatenate([[0], np.cumsum([len(ring) for ring in rings])]).astype(np.int32)
-        self.following: Index = np.arange(1, len(self.points) + 1, dtype=np.int32)
-        self.following[self.ring_starts[1:] - 1] = self.ring_starts[:-1]
+        points, self.ring_starts, self.following = joined_rings(rings)
+        self.points = normalize(points)
         repeated = np.flatnonzero(dot(self._steps, self._steps) == 0.0)
         if len(repeated):
             raise MeshError(f"the coast has its point {repeated[0]} twice in a row; leave one of them out")
@@ -47,6 +93,11 @@ class Coastline:
     def n_rings(self) -> int:
         """Number of closed rings."""
         return len(self.ring_starts) - 1
+
+    @property
+    def corners(self) -> NDArray[np.bool_]:
+        """None: a coast is smooth."""
+        return np.zeros(len(self.points), np.bool_)
 
     @cached_property
     def area(self) -> float:

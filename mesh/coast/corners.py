@@ -1,7 +1,7 @@
 """Corners and sides of clipped cells: what of their rings a mesh keeps.
 
-Corners are circumcentres and crossings of the coast; the points of the coast between two crossings are no corners, so
-that a cell's portion of the coast is one side.
+Corners are circumcentres and crossings of the coast; other points of the coast are no corners, so that a cell's portion
+of the coast is one side, but for those that the coast says are `Coast.corners`.
 """
 
 from dataclasses import dataclass
@@ -43,20 +43,20 @@ def corners_of(sea: SeaCells) -> Corners:
     """
     number = int(np.argmax(sea.loops > 1))
     if sea.loops[number] > 1:
-        raise _too_coarse(f"cell {number} is in several parts or goes round an island")
+        raise _too_coarse(sea, f"cell {number} is in several parts or goes round an island")
     starts = np.empty(sea.n_cells + 1, np.int32)
     places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
-    crossings = sea.crossing_cells, sea.n_triangles, sea.n_triangles + sea.n_coast
+    crossings = sea.crossing_cells, sea.coastline.corners, sea.n_triangles, sea.n_triangles + sea.n_coast
     count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
     sizes = np.diff(starts)
     corners = Corners(
         starts, places[:count], neighbours[:count], np.repeat(np.arange(sea.n_cells, dtype=np.int32), sizes)
     )
     if max(corners.neighbours.max(), sea.crossing_cells.max(initial=0)) >= sea.n_cells:
-        raise _too_coarse("some sea lies farther from all generators than from points on land")
+        raise _too_coarse(sea, "some sea lies farther from all generators than from points on land")
     if sizes.min() < FEWEST_SIDES:
-        raise _too_coarse(f"cell {np.argmin(sizes)} has {sizes.min()} sides")
-    _require_one_side_each(corners, sea.n_cells)
+        raise _too_coarse(sea, f"cell {np.argmin(sizes)} has {sizes.min()} sides")
+    _require_one_side_each(corners, sea)
     return corners
 
 
@@ -96,6 +96,7 @@ def _fill_corners(
     rings: Index,
     triangles: Index,
     crossing_cells: Index,
+    coast_corners: NDArray[np.bool_],
     n_triangles: int,
     after_coast: int,
     starts: Index,
@@ -111,7 +112,9 @@ def _fill_corners(
             if place < n_triangles:
                 neighbours[count] = neighbour_across(triangles, place, cell)
             elif place < after_coast:
-                continue
+                if not coast_corners[place - n_triangles]:
+                    continue
+                neighbours[count] = COAST
             else:
                 entered = crossing_cells[place - after_coast, 1]
                 neighbours[count] = COAST if entered == cell else entered
@@ -121,12 +124,12 @@ def _fill_corners(
     return count
 
 
-def _require_one_side_each(corners: Corners, n_cells: int) -> None:
+def _require_one_side_each(corners: Corners, sea: SeaCells) -> None:
     """Raise `MeshError` where a cell meets a neighbour along several sides."""
-    found, counts = _pairs_of_cells(corners, n_cells)
+    found, counts = _pairs_of_cells(corners, sea.n_cells)
     if counts.max() > 1:
-        cell, other = divmod(int(found[np.argmax(counts)]), n_cells)
-        raise _too_coarse(f"cells {cell} and {other} meet on both sides of some land")
+        cell, other = divmod(int(found[np.argmax(counts)]), sea.n_cells)
+        raise _too_coarse(sea, f"cells {cell} and {other} meet on both sides of some land")
 
 
 def _pairs_of_cells(corners: Corners, n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -136,5 +139,5 @@ def _pairs_of_cells(corners: Corners, n_cells: int) -> tuple[NDArray[np.int64], 
     return np.unique(pairs, return_counts=True)
 
 
-def _too_coarse(what: str) -> MeshError:
-    return MeshError(f"{what}: ask for more cells, or for a smoother coast")
+def _too_coarse(sea: SeaCells, what: str) -> MeshError:
+    return MeshError(f"{what}: ask for more cells, or for {sea.coastline.wider}")

@@ -2,14 +2,15 @@
 
 On an arc of the coast, y = a + t (b - a) up to its length, and the side between the cells of p and q is where
 y.(p - q) = 0: linear in t. So the coast is followed from cell to cell without trigonometry, and what leaves one cell is
-the very point that enters the next.
+the very point that enters the next. In the plane, where a loop says `is_flat`, the same holds for y less the middle of
+p and q, and y is on the straight line itself.
 """
 
 import numba
 import numpy as np
 
 from mesh.arrays import Array, Index
-from mesh.geometry.vectors import dot_product, vector_between, vector_to
+from mesh.geometry.vectors import Vector, compiled, difference, dot_product, vector_between, vector_to
 
 NO_ROOM, NOT_CLOSED = -1, -2
 """What `follow_coast` gives in the place of a number of crossings."""
@@ -27,21 +28,42 @@ def neighbour_across(triangles: Index, triangle: int, cell: int) -> int:
     return triangles[triangle, (corner + 2) % 3]
 
 
+@compiled
+def from_middle(place: Vector, points: Array, cell: int, other: int, is_flat: bool) -> Vector:
+    """The way to a place from the middle of two cells; on the sphere, whose sides do so too, from the origin.
+
+    To the last bit it is the same for the two in the other order.
+    """
+    if is_flat:
+        x, y = points[cell, 0] + points[other, 0], points[cell, 1] + points[other, 1]
+        return (place[0] - 0.5 * x, place[1] - 0.5 * y, 0.0)
+    return place
+
+
+@compiled
+def _nearness(target: Vector, points: Array, cell: int, is_flat: bool) -> float:
+    """What is largest for the cell that contains the target."""
+    if is_flat:
+        way = difference(vector_to(points, cell), target)
+        return -dot_product(way, way)
+    return dot_product(target, vector_to(points, cell))
+
+
 @numba.njit(cache=True)
 def nearest_cell(
-    target: tuple[float, float, float], points: Array, triangles: Index, ring_starts: Index, rings: Index, cell: int
+    target: Vector, points: Array, triangles: Index, ring_starts: Index, rings: Index, cell: int, is_flat: bool
 ) -> int:
     """The cell that contains `target`, found by steps from `cell` to nearer neighbours."""
-    best = dot_product(target, vector_to(points, cell))
+    best = _nearness(target, points, cell, is_flat)
     going = True
     while going:
         going = False
         centre = cell
         for slot in range(ring_starts[centre], ring_starts[centre + 1]):
             other = neighbour_across(triangles, rings[slot], centre)
-            product = dot_product(target, vector_to(points, other))
-            if product > best:
-                best, cell, going = product, other, True
+            nearness = _nearness(target, points, other, is_flat)
+            if nearness > best:
+                best, cell, going = nearness, other, True
     return cell
 
 
@@ -51,6 +73,7 @@ def _follow_ring(
     triangles: Index,
     ring_starts: Index,
     rings: Index,
+    is_flat: bool,
     coast: Array,
     first: int,
     last: int,
@@ -76,7 +99,8 @@ def _follow_ring(
                 away = vector_between(points, cell, points, other)
                 slope = dot_product(step, away)
                 if slope > 0.0:
-                    at = max(-dot_product(start, away) / slope, passed)
+                    rise = dot_product(from_middle(start, points, cell, other, is_flat), away)
+                    at = max(-rise / slope, passed)
                     if at < nearest:
                         nearest, entered = at, other
             if entered < 0:
@@ -86,7 +110,7 @@ def _follow_ring(
             x = start[0] + nearest * step[0]
             y = start[1] + nearest * step[1]
             z = start[2] + nearest * step[2]
-            factor = 1.0 / np.sqrt(x * x + y * y + z * z)
+            factor = 1.0 if is_flat else 1.0 / np.sqrt(x * x + y * y + z * z)
             crossings[count, 0], crossings[count, 1], crossings[count, 2] = factor * x, factor * y, factor * z
             arcs[count], cells[count, 0], cells[count, 1] = arc, cell, entered
             count += 1
@@ -100,6 +124,7 @@ def follow_coast(
     triangles: Index,
     ring_starts: Index,
     rings: Index,
+    is_flat: bool,
     coast: Array,
     coast_starts: Index,
     hints: Index,
@@ -119,7 +144,7 @@ def follow_coast(
     crossing_starts[0] = 0
     for ring in range(len(coast_starts) - 1):
         first, last = coast_starts[ring], coast_starts[ring + 1]
-        arrived = nearest_cell(vector_to(coast, first), points, triangles, ring_starts, rings, hints[ring])
+        arrived = nearest_cell(vector_to(coast, first), points, triangles, ring_starts, rings, hints[ring], is_flat)
         begun, begin, rounds = -1, count, 0
         # Where a ring begins on the side between two cells, both contain its first point: the one in which it arrives
         # there is the one to begin in, so that what it crosses there is crossed once.
@@ -128,7 +153,7 @@ def follow_coast(
                 return NOT_CLOSED
             begun = arrived
             count, arrived = _follow_ring(
-                points, triangles, ring_starts, rings, coast, first, last, begun, begin, crossings, arcs, cells
+                points, triangles, ring_starts, rings, is_flat, coast, first, last, begun, begin, crossings, arcs, cells
             )
             if count < 0:
                 return count

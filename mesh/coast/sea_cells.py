@@ -1,16 +1,17 @@
 """Voronoi cells of moving generators, clipped by a coast: what an optimiser takes in the place of a triangulation."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
 from mesh.arrays import Array, Index
 from mesh.coast.clipped_rings import fill_clipped_rings, list_portions
-from mesh.coast.coastline import Coastline
+from mesh.coast.coastline import Coast
 from mesh.coast.crossings import NO_ROOM, NOT_CLOSED, follow_coast
 from mesh.errors import MeshError
 from mesh.generation.optimizer import ScvtResult
-from mesh.triangulation.moving import Triangulation
+from mesh.triangulation.moving import MovingCells, Triangulation
 
 
 class SeaCells:
@@ -27,14 +28,21 @@ class SeaCells:
     generators round them are fillers too.
     """
 
-    def __init__(self, points: Array, coastline: Coastline, fillers: Array) -> None:
-        """Clip the cells of unit vectors `points` (n, 3); raise `MeshError` where they cannot be triangulated.
+    def __init__(
+        self,
+        points: Array,
+        coastline: Coast,
+        fillers: Array,
+        triangulated: Callable[[Array], MovingCells] = Triangulation,
+    ) -> None:
+        """Clip the cells of `points` (n, 3), unit vectors; raise `MeshError` where they cannot be triangulated.
 
-        So does it, and `update`, where rounding hides in which cell a ring of the coast begins.
+        So does it, and `update`, where rounding hides in which cell a ring of the coast begins. In the plane
+        `triangulated` gives the whole cells.
         """
         self._coastline, self._fillers = coastline, fillers
         self._all_points = np.concatenate([points, fillers])
-        self._triangulation = Triangulation(self._all_points)
+        self._triangulation = triangulated(self._all_points)
         n_rings = coastline.n_rings
         self.n_triangles, self.n_coast = len(self._triangulation.triangles), len(coastline.points)
         self.n_crossings = 0
@@ -53,7 +61,7 @@ class SeaCells:
         return self._triangulation.triangles
 
     @property
-    def coastline(self) -> Coastline:
+    def coastline(self) -> Coast:
         """The coast."""
         return self._coastline
 
@@ -93,10 +101,12 @@ class SeaCells:
     def _clip(self) -> None:
         whole, coastline = self._triangulation, self._coastline
         cells = self._all_points, whole.triangles, whole.ring_starts, whole.rings
-        coast = coastline.points, coastline.ring_starts
+        coast, is_flat = (coastline.points, coastline.ring_starts), coastline.surface.is_flat
         while True:
             starts, arcs = self._crossing_starts, self._arcs
-            self.n_crossings = follow_coast(*cells, *coast, self._hints, starts, self._crossings, arcs, self._cells)
+            self.n_crossings = follow_coast(
+                *cells, is_flat, *coast, self._hints, starts, self._crossings, arcs, self._cells
+            )
             if self.n_crossings == NOT_CLOSED:
                 raise MeshError(
                     "a ring of the coast ends in another cell than it begins in, however often it is followed; "
@@ -113,6 +123,7 @@ class SeaCells:
             whole.ring_starts,
             whole.rings,
             whole.triangles,
+            is_flat,
             self.circumcenters,
             self.n_triangles,
             coastline.ring_starts,

@@ -13,8 +13,8 @@ def sea_topology(sea: SeaCells) -> tuple[Topology, Index]:
     """The connectivity, and the places (n_vertices,) of its vertices among `SeaCells.circumcenters`.
 
     At a vertex on the coast meet the cell that the coast enters there, the cell that it leaves, and no third one; the
-    edge between them and two edges of the coast. Vertices and edges are numbered after their lowest cells. Raises
-    `MeshError` as `corners_of` does.
+    edge between them and two edges of the coast. At a corner of the coast itself there is one cell. Vertices and edges
+    are numbered after their lowest cells. Raises `MeshError` as `corners_of` does.
     """
     corners = corners_of(sea)
     places, cells_on_vertex, vertex_of = _vertices(sea, corners)
@@ -59,13 +59,15 @@ def _preceding(corners: Corners) -> Index:
 
 def _vertices(sea: SeaCells, corners: Corners) -> tuple[Index, Index, Index]:
     """Places (n_vertices,) of the vertices, the cells (n_vertices, 3) at each, and the vertex of every corner."""
-    used, inverse = np.unique(corners.places, return_inverse=True)
-    inner = used < sea.n_triangles
+    used, first, inverse = np.unique(corners.places, return_index=True, return_inverse=True)
+    inner, crossed = used < sea.n_triangles, used >= sea.n_triangles + sea.n_coast
     cells = np.full((len(used), 3), FILL, np.int32)
     triangles = sea.triangles[used[inner]]
     turn = np.argmin(triangles, axis=1)[:, None] + np.arange(3)
     cells[inner] = np.take_along_axis(triangles, turn % 3, axis=1)
-    cells[~inner, :2] = sea.crossing_cells[used[~inner] - sea.n_triangles - sea.n_coast, ::-1]
+    cells[crossed, :2] = sea.crossing_cells[used[crossed] - sea.n_triangles - sea.n_coast, ::-1]
+    alone = ~(inner | crossed)
+    cells[alone, 0] = corners.cells[first[alone]]
     lowest, second = np.sort(np.where(cells == FILL, sea.n_cells, cells), axis=1)[:, :2].T
     order = np.lexsort((used, second, lowest))
     rank = np.empty(len(order), np.int32)

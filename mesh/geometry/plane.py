@@ -80,6 +80,11 @@ class Plane:
         y = (u[..., 0] * vv - v[..., 0] * uu) / twice
         return self.wrapped(a + np.stack([x, y, np.zeros_like(x)], axis=-1))
 
+    def triangle_area(self, a: Array, b: Array, c: Array) -> Array:
+        """Half the product of two sides."""
+        u, v = self.shortest(b - a), self.shortest(c - a)
+        return 0.5 * (u[..., 0] * v[..., 1] - u[..., 1] * v[..., 0])
+
     def kite_areas(self, points: Array, edges: Array, cells: Index, sides: Index, corners: Array) -> Array:
         """Each kite is two triangles with a corner in the vertex."""
 
@@ -138,6 +143,10 @@ class Plane:
     def coordinates(self, points: Array) -> tuple[Array, Array]:
         """The coordinates x and y."""
         return points[..., 0], points[..., 1]
+
+    def in_words(self, point: Array) -> str:
+        """The coordinates x and y."""
+        return f"x = {point[0]:.6g}, y = {point[1]:.6g} m"
 
     def axes(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
         """Along x and y."""

@@ -50,6 +50,9 @@ class Surface(Protocol):
     def circumcenter(self, a: Array, b: Array, c: Array) -> Array:
         """The point (..., 3) equidistant from three that run counter-clockwise."""
 
+    def triangle_area(self, a: Array, b: Array, c: Array) -> Array:
+        """Signed area (...), positive where a, b, c run counter-clockwise."""
+
     def kite_areas(self, points: Array, edges: Array, cells: Index, sides: Index, corners: Array) -> Array:
         """Signed areas (n, 3) of the kites from each corner to edge j, to cell j, to edge j + 1.
 
@@ -85,6 +88,9 @@ class Surface(Protocol):
 
     def coordinates(self, points: Array) -> tuple[Array, Array]:
         """What functions of the place are functions of: longitude and latitude in radians, or x and y in metres."""
+
+    def in_words(self, point: Array) -> str:
+        """Where a point (3,) is: degrees east and north, or x and y in metres."""
 
     def axes(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
         """Unit vectors (..., 3) to the east and the north at `angles`; along x and y in the plane."""

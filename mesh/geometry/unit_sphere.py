@@ -6,7 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mesh.arrays import Array, Index, by_blocks, row_loop
-from mesh.geometry.sphere import arc_length, circumcenter, dot, east_north, mean_spacing, normalize, to_lonlat
+from mesh.geometry.sphere import (
+    arc_length,
+    circumcenter,
+    dot,
+    east_north,
+    mean_spacing,
+    normalize,
+    to_lonlat,
+    triangle_area,
+)
 from mesh.geometry.vectors import area_parts, vector_to
 
 
@@ -34,6 +43,10 @@ class UnitSphere:
     def circumcenter(self, a: Array, b: Array, c: Array) -> Array:
         """On the side from which a, b, c run counter-clockwise."""
         return circumcenter(a, b, c)
+
+    def triangle_area(self, a: Array, b: Array, c: Array) -> Array:
+        """Of the spherical triangle."""
+        return triangle_area(a, b, c)
 
     def kite_areas(self, points: Array, edges: Array, cells: Index, sides: Index, corners: Array) -> Array:
         """Each kite is two spherical triangles."""
@@ -87,6 +100,11 @@ class UnitSphere:
     def coordinates(self, points: Array) -> tuple[Array, Array]:
         """Longitude and latitude."""
         return to_lonlat(points)
+
+    def in_words(self, point: Array) -> str:
+        """Longitude and latitude."""
+        longitude, latitude = np.degrees(to_lonlat(point))
+        return f"{longitude:.4g}, {latitude:.4g} degrees"
 
     def axes(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
         """East and north."""

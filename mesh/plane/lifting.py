@@ -29,6 +29,15 @@ def lift(places: Array, centre: Array, radius: float, lifted: Array) -> None:
         lifted[row, 2] = 2.0 * factor - 1.0
 
 
+@numba.njit(cache=True, error_model="numpy", fastmath=False)
+def to_circumcenter(places: Array, a: int, b: int, c: int) -> tuple[float, float]:
+    """The way from place a to the circumcentre of three `places` (m, 2 or more)."""
+    ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
+    vx, vy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
+    uu, vv, twice = ux * ux + uy * uy, vx * vx + vy * vy, 2.0 * (ux * vy - uy * vx)
+    return (vy * uu - uy * vv) / twice, (ux * vv - vx * uu) / twice
+
+
 def far_points() -> Array:
     """Unit vectors (k, 3) in the south, which together with lifted points surround the sphere."""
     points = fibonacci_points(SURROUNDING)

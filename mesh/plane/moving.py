@@ -7,7 +7,7 @@ from mesh.arrays import Array, Index
 from mesh.errors import MeshError
 from mesh.plane.domain import Rectangle
 from mesh.plane.images import Images, images_of
-from mesh.plane.lifting import far_points, lift, lowered
+from mesh.plane.lifting import far_points, lift, lowered, to_circumcenter
 from mesh.triangulation.moving import Triangulation
 
 REACH = 6.0
@@ -140,10 +140,7 @@ def _circumcenters(places: Array, triangles: Index, n: int, centers: Array, exte
         west, south, east, north = np.inf, np.inf, -np.inf, -np.inf
         for triangle in range(block * TRIANGLE_BLOCK, min((block + 1) * TRIANGLE_BLOCK, len(triangles))):
             a, b, c = triangles[triangle, 0], triangles[triangle, 1], triangles[triangle, 2]
-            ux, uy = places[b, 0] - places[a, 0], places[b, 1] - places[a, 1]
-            vx, vy = places[c, 0] - places[a, 0], places[c, 1] - places[a, 1]
-            uu, vv, twice = ux * ux + uy * uy, vx * vx + vy * vy, 2.0 * (ux * vy - uy * vx)
-            x, y = (vy * uu - uy * vv) / twice, (ux * vv - vx * uu) / twice
+            x, y = to_circumcenter(places, a, b, c)
             centers[triangle, 0], centers[triangle, 1] = places[a, 0] + x, places[a, 1] + y
             if a < n or b < n or c < n:
                 radius = np.sqrt(x * x + y * y)

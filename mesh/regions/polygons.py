@@ -29,16 +29,25 @@ def read_polygons(path: Path) -> Region:
 
     Raises `MeshError` where the file cannot be read, holds no polygon, or one that crosses itself.
     """
+    polygons = [[_positions(ring, path) for ring in rings] for rings in polygons_in(path)]
+    return polygon_region(polygons, str(path))
+
+
+def polygons_in(path: Path) -> list[list[Any]]:
+    """The rings of each polygon of a GeoJSON file, as they are there: the one round it, and those of its holes.
+
+    Raises `MeshError` where the file cannot be read, or holds no polygon.
+    """
     try:
         content = json.loads(path.read_text(encoding="utf-8"))
     except OSError as error:
         raise MeshError(f"{path}: {error.strerror}; give a GeoJSON file with a polygon") from error
     except ValueError as error:
         raise MeshError(f"{path}: is not GeoJSON ({error}); give a file with a polygon") from error
-    polygons = [[_positions(ring, path) for ring in rings] for rings in _polygons(content, path)]
+    polygons = _polygons(content, path)
     if not polygons:
         raise MeshError(f"{path}: holds no polygon; give a GeoJSON file with a Polygon or a MultiPolygon")
-    return polygon_region(polygons, str(path))
+    return polygons
 
 
 def polygon_region(polygons: list[list[Array]], name: str) -> Region:

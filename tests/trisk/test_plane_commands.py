@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mesh import MeshWarning, hexagon_mesh, read_mesh
+from mesh import MeshRequest, MeshWarning, hexagon_mesh, polygon_mesh, read_mesh
 from mesh.conventions import MESH_VARIABLES
 from postprocess.figures import compare_maps, paper
 from tests.planar_tool import write_planar_file
@@ -16,6 +16,7 @@ from tests.trisk.conftest import Call
 from tests.under_mpiexec import needs_mpi, on_processes
 
 LENGTHS = "1e6,866025.4037844386"
+IN_BOX = ("--plane", "1e6,8e5", "--periodic", "none", "--cells", 60)
 RUN = ("--days", 0.02, "--snapshot-hours", 0.24, "--diagnostics-hours", 0.24, "--dt", 216)
 
 
@@ -56,7 +57,14 @@ def test_quality_of_a_file_of_the_community(trisk: Call, tmp_path: Path) -> None
         (("--plane", LENGTHS), "a mesh on a plane needs cells; give --cells N, or --hexagons NX,NY"),
         (("--hexagons", "10,10", "--cells", 42), "--periodic and --hexagons go with --plane LX,LY"),
         (("--plane", LENGTHS, "--hexagons", "10,10", "--cells", 42), "only --plane and --periodic go with --hexagons"),
-        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast", "world-ocean"), "--coast and --coast-width do not go"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast-width", 10), "--nested and --coast-width do not go with"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast", "a.geojson"), "hexagons do not follow the walls"),
+        (
+            ("--plane", LENGTHS, "--cells", 42, "--coast", "a.geojson"),
+            "cannot be periodic, which it is in xy; give --pe",
+        ),
+        ((*IN_BOX, "--coast", "world-ocean"), "--coast is world-ocean; on a plane give a polygon in metres"),
+        ((*IN_BOX, "--coast", "none.geojson"), "none.geojson: No such file or directory; give a GeoJSON file"),
         (("--plane", LENGTHS, "--hexagons", "10,1.5"), "give two whole numbers with a comma between them"),
         (("--plane", "1e6", "--hexagons", "10,10"), "give two numbers with a comma between them"),
     ],
@@ -69,6 +77,50 @@ def test_what_cannot_be_made_is_told_in_a_line(
     assert words in err
     assert err.count("\n") == 1
     assert not (tmp_path / "plane.nc").exists()
+
+
+def geojson(path: Path, *polygons: object) -> Path:
+    path.write_text(json.dumps({"type": "MultiPolygon", "coordinates": polygons}))
+    return path
+
+
+L_SHAPE = [[[0, 0], [1e6, 0], [1e6, 3e5], [4e5, 3e5], [4e5, 8e5], [0, 8e5, 7.0], [0, 0]]]
+
+
+def test_a_polygon_is_filled(trisk: Call, tmp_path: Path) -> None:
+    pytest.importorskip("shapely")
+    path, output = geojson(tmp_path / "room.geojson", L_SHAPE), tmp_path / "room.nc"
+    code, out, err = trisk("mesh", *IN_BOX, "--coast", path, "-o", output)
+    assert (code, err.count("\n")) == (0, 1), err
+    assert "of 1e-08 spacings" in err
+    assert "residual" in out
+    made = read_mesh(output)
+    assert made.area_cell.sum() == pytest.approx(5e11, rel=1e-13)
+    expected = polygon_mesh([[place[:2] for place in L_SHAPE[0]]], MeshRequest(60, plane=(1e6, 8e5), periodic="none"))
+    np.testing.assert_array_equal(made.cell_points, expected.cell_points)
+    assert json.loads(trisk("quality", output, "--json")[1])["cells"] == 60
+
+
+@pytest.mark.parametrize(
+    ("polygons", "words"),
+    [
+        ([L_SHAPE, L_SHAPE], "room.geojson: holds 2 polygons, and a mesh fills one; leave the others out"),
+        ([[[[0, 0], [1e6, 0], [0, 9e5]]]], "ring 0 of the polygon of"),
+        ([[[[0, 0], [1e6, 0], [0, 9e5]]]], "x = 0, y = 900000 m, outside of the plane of 1e+06 by 800000 m"),
+        ([[[[0, 0], [1e6, 8e5], [1e6, 0], [0, 8e5]]]], "is not simple (Self-intersection[500000 400000])"),
+        ([[[[0, 0], [1e6, 8e5]]]], "has 2 points; give at least 3"),
+    ],
+)
+def test_files_without_a_polygon_in_the_plane_are_refused(
+    trisk: Call, tmp_path: Path, polygons: list[object], words: str
+) -> None:
+    pytest.importorskip("shapely")
+    path = geojson(tmp_path / "room.geojson", *polygons)
+    code, _, err = trisk("mesh", *IN_BOX, "--coast", path, "-o", tmp_path / "room.nc")
+    assert code == 2
+    assert words in err
+    assert err.count("\n") == 1
+    assert not (tmp_path / "room.nc").exists()
 
 
 @pytest.fixture

@@ -1,7 +1,7 @@
 """`trisk mesh`: generate a mesh."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from importlib.util import find_spec
@@ -48,7 +48,8 @@ def mesh(
             "--coast",
             metavar="REGION",
             help="Fill the sea of this region with cells that its coast clips: north-atlantic, world-ocean, a box "
-            "WEST,EAST,SOUTH,NORTH in degrees, polygons FILE.geojson, or a mask or signed distance FILE.nc:VARIABLE.",
+            "WEST,EAST,SOUTH,NORTH in degrees, polygons FILE.geojson, or a mask or signed distance FILE.nc:VARIABLE; "
+            "on a plane with --periodic none fill a polygon FILE.geojson, in metres, up to its walls.",
         ),
     ] = None,
     density: Annotated[
@@ -176,11 +177,12 @@ def mesh(
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
     if is_on_plane(request):
-        if resume or nested is not None or coast is not None or coast_width is not None:
-            raise MeshError("--resume, --nested, --coast and --coast-width do not go with --plane; leave them out")
+        if resume or nested is not None or coast_width is not None:
+            raise MeshError("--resume, --nested and --coast-width do not go with --plane; leave them out")
+        make = mesh_on_plane if coast is None else _in_polygon(coast, request)
         require_possible_on_plane(request)
         with convergence_bar(limits.tolerance, not quiet and hexagons is None) as show:
-            on_plane = mesh_on_plane(request, show)
+            on_plane = make(request, show)
         write_mesh(on_plane, output, command_line(), file_format)
         if not quiet:
             print_quality(on_plane, str(output))
@@ -234,6 +236,21 @@ def _with_coast(coast: str, request: "MeshRequest", raised: tuple[float, float] 
     shore = None if raised is None else Shore(raised[0] * 1000.0 / EARTH_RADIUS, raised[1])
     with convergence_bar(coast_limits(request).tolerance, not quiet) as show:
         return region_mesh(find_region(coast), request, show, shore)
+
+
+def _in_polygon(coast: str, request: "MeshRequest") -> "Callable[[MeshRequest, Callback], VoronoiMesh]":
+    """What makes the mesh of the polygon in a file; raise `MeshError` where that or the request does not fit."""
+    from mesh import MeshError, polygon_mesh
+    from mesh.polygon.generation import require_possible_in_polygon
+    from mesh.polygon.rings import checked_rings, read_rings
+    from mesh.regions.find import GEOJSON
+
+    plane = require_possible_in_polygon(request)
+    if not coast.endswith(GEOJSON):
+        raise MeshError(f"--coast is {coast}; on a plane give a polygon in metres, FILE.geojson")
+    name = f"the polygon of {coast}"
+    rings = checked_rings(read_rings(Path(coast)), plane, name)
+    return lambda request, show: polygon_mesh(rings, request, show, name)
 
 
 @contextmanager

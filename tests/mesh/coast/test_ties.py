@@ -50,7 +50,7 @@ def channel(cells: int, per_cell: int, begin: float, stagger: float = 0.0) -> tu
 def filled(rings: list[Array], points: Array) -> VoronoiMesh:
     """The mesh of a sea; its cells fill it, and each crossing leads from the cell that the one before led into."""
     sea = cells_of(rings, points)
-    entered = sea.crossing_cells[portions_of(sea, points).next_crossing, 0]
+    entered = sea.crossing_cells[portions_of(sea, points).next_end, 0]
     np.testing.assert_array_equal(entered, sea.crossing_cells[:, 1])
     mesh = sea_mesh(sea, points)
     assert mesh.area_cell.sum() == pytest.approx(sea.coastline.area, rel=1e-12)

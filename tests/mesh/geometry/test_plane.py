@@ -6,6 +6,7 @@ import pytest
 from mesh.arrays import Array
 from mesh.geometry.plane import Plane
 from mesh.geometry.surface import UNIT_SPHERE, surface_of
+from mesh.geometry.unit_sphere import UnitSphere
 from mesh.geometry.vectors import nearest_image
 from mesh.plane.hexagons import hexagon_mesh
 
@@ -63,3 +64,14 @@ def test_a_curve_through_a_plane_keeps_neighbours(shift: float) -> None:
     places = PLANE.curve_places(np.column_stack([x + shift, y, np.zeros(64)]))
     assert (np.abs(places[:, 1:]) <= 1.0).all()
     np.testing.assert_allclose(np.ptp(places, axis=0), [0.0, 2.0, 2.0])
+
+
+def test_triangles_that_run_clockwise_have_negative_areas() -> None:
+    a, b, c = np.array([[9.0, 1.0, 0.0], [1.0, 1.0, 0.0], [9.0, 5.0, 0.0]])
+    assert Plane(0.0, 0.0).triangle_area(a, b, c) == -16.0
+    assert Plane(10.0, 0.0).triangle_area(a, b, c) == 4.0
+
+
+def test_places_are_told_in_the_coordinates_of_their_surface() -> None:
+    assert Plane(0.0, 0.0).in_words(np.array([2.5e5, 1.0, 0.0])) == "x = 250000, y = 1 m"
+    assert UnitSphere().in_words(np.array([0.0, 0.6, 0.8])) == "90, 53.13 degrees"
