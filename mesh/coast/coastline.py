@@ -42,6 +42,10 @@ class Coast(Protocol):
         """Number of closed rings."""
 
     @property
+    def area(self) -> float:
+        """Area of the sea, in squares of the lengths of the surface."""
+
+    @property
     def corners(self) -> NDArray[np.bool_]:
         """Which of its points (m,) are vertices of a mesh; at others an edge of the coast bends."""
 

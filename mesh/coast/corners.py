@@ -44,14 +44,8 @@ def corners_of(sea: SeaCells) -> Corners:
     number = int(np.argmax(sea.loops > 1))
     if sea.loops[number] > 1:
         raise _too_coarse(sea, f"cell {number} is in several parts or goes round an island")
-    starts = np.empty(sea.n_cells + 1, np.int32)
-    places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
-    crossings = sea.crossing_cells, sea.coastline.corners, sea.n_triangles, sea.n_triangles + sea.n_coast
-    count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
-    sizes = np.diff(starts)
-    corners = Corners(
-        starts, places[:count], neighbours[:count], np.repeat(np.arange(sea.n_cells, dtype=np.int32), sizes)
-    )
+    corners = _all_corners(sea)
+    sizes = np.diff(corners.starts)
     if max(corners.neighbours.max(), sea.crossing_cells.max(initial=0)) >= sea.n_cells:
         raise _too_coarse(sea, "some sea lies farther from all generators than from points on land")
     if sizes.min() < FEWEST_SIDES:
@@ -77,7 +71,7 @@ def _all_corners(sea: SeaCells) -> Corners:
     """The corners of all cells, sound or not."""
     starts = np.empty(sea.n_cells + 1, np.int32)
     places, neighbours = np.empty_like(sea.rings), np.empty_like(sea.rings)
-    crossings = sea.crossing_cells, sea.n_triangles, sea.n_triangles + sea.n_coast
+    crossings = sea.crossing_cells, sea.coastline.corners, sea.n_triangles, sea.n_triangles + sea.n_coast
     count = _fill_corners(sea.ring_starts, sea.rings, sea.triangles, *crossings, starts, places, neighbours)
     cells = np.repeat(np.arange(sea.n_cells, dtype=np.int32), np.diff(starts))
     return Corners(starts, places[:count], neighbours[:count], cells)

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesh.arrays import Array
-from mesh.coast.coastline import Coastline
+from mesh.coast.coastline import Coast, Coastline
 from mesh.density.named import Density, density_at, uniform
 from mesh.density.scaling import PROBES
 from mesh.density.spreading import ZERO_DENSITY, spread_points
@@ -21,7 +21,7 @@ INLAND = 3.0
 """Distance of fillers from the coast, in spacings: beyond the generators of the coast, seen from the sea."""
 
 
-def sea_spacing(coastline: Coastline, cells: int) -> float:
+def sea_spacing(coastline: Coast, cells: int) -> float:
     """Distance (radians) between neighbours if `cells` equal plane hexagons filled the sea."""
     return float(np.sqrt(2.0 * coastline.area / (np.sqrt(3.0) * cells)))
 

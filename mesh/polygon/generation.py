@@ -38,7 +38,7 @@ def polygon_mesh(
     begin = time.perf_counter()
     plane = require_possible_in_polygon(request)
     walls = Walls(checked_rings(rings, plane, name), cells_of(request))
-    density = density_on_plane(request.density, plane.lengths)
+    density = density_on_plane(request, plane.lengths)
     limits = limits_of(request)
     points = starting_points(walls, cells_of(request), density, request.start, request.seed)
     found = converge_in_polygon(points, walls, request.method, density, limits.since(begin), callback)
