@@ -63,7 +63,8 @@ class Plan:
                 raise InputError(f"there is no family of meshes named '{family}'; choose among {', '.join(known)}")
         for cells in self.cells:
             if self.plane is not None:
-                self.plane.require_cells(cells)
+                for family in self.families:
+                    self.plane.require_cells(family, cells)
             elif icosahedral_level(cells) is None or not LEAST_CELLS <= cells <= LARGEST_CELLS:
                 raise InputError(
                     f"{cells} cells are no bisected icosahedron of a suitable size; choose among {LEAST_CELLS}, 642, "

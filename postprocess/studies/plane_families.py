@@ -1,11 +1,15 @@
-"""Families of meshes on planes that a study compares: regular hexagons on the plane of a case."""
+"""Families of meshes on planes that a study compares, on the plane of a case."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from cases.base import Case
+from cases.plane.base import PlaneCase
+from mesh.mesh_request import MeshRequest
+from mesh.plane.generation import mesh_on_plane
 from mesh.plane.hexagons import FEWEST_COLUMNS, FEWEST_ROWS, ROUNDING, ROW, hexagon_mesh
 from mesh.voronoi_mesh import VoronoiMesh
 from postprocess.studies.families import Family
@@ -15,6 +19,11 @@ LEAST_CELLS, LARGEST_CELLS = 12, 1_000_000
 
 PLANE_CELLS = (576, 2304, 9216)
 """Sizes of the meshes of a study unless others are asked for."""
+
+HEXAGONS = "hexagons"
+
+TOLERANCE = 1e-6
+"""Residual of Voronoi meshes, mean spacings."""
 
 FARTHEST = 2.0
 """Meshes may have this many times more, or fewer, cells than are asked for."""
@@ -34,23 +43,34 @@ class StudyPlane:
     def families(self) -> dict[str, Family]:
         """Families by name."""
         x_length, y_length = self.lengths
-        description = f"regular hexagons of a plane of {x_length!r} by {y_length!r} m, periodic in {self.periodic}"
-        return {"hexagons": Family(description, self._hexagons)}
+        plane = f"a plane of {x_length!r} by {y_length!r} m, periodic in {self.periodic}"
+        return {
+            HEXAGONS: Family(f"regular hexagons of {plane}", self._hexagons),
+            "cvt": Family(f"converged Voronoi meshes, from rows of cells, of {plane}", partial(self._voronoi, "rows")),
+            "random": Family(f"the same from random points, of {plane}", partial(self._voronoi, "random")),
+        }
 
-    def require_cells(self, cells: int) -> None:
-        """Raise `InputError` unless there is a mesh of about so many cells."""
-        self._counts(cells)
+    def require_cells(self, family: str, cells: int) -> None:
+        """Raise `InputError` unless there is a mesh of the family with about so many cells."""
+        if not LEAST_CELLS <= cells <= LARGEST_CELLS:
+            raise InputError(f"a plane of a study cannot have {cells} cells; give {LEAST_CELLS} to {LARGEST_CELLS}")
+        if not all(np.isfinite(length) and length > 0.0 for length in self.lengths):
+            x_length, y_length = self.lengths
+            raise InputError(f"the plane has the lengths {x_length:g} and {y_length:g} m; give positive, finite ones")
+        if family == HEXAGONS:
+            self._counts(cells)
+
+    def _voronoi(self, start: str, cells: int) -> VoronoiMesh:
+        return mesh_on_plane(
+            MeshRequest(cells, plane=self.lengths, periodic=self.periodic, start=start, tolerance=1e-6)
+        )
 
     def _hexagons(self, cells: int) -> VoronoiMesh:
         return hexagon_mesh(self.lengths, self._counts(cells), self.periodic)
 
     def _counts(self, cells: int) -> tuple[int, int]:
         """Columns and rows, nearest to so many cells, that fit the plane."""
-        if not LEAST_CELLS <= cells <= LARGEST_CELLS:
-            raise InputError(f"a plane of a study cannot have {cells} cells; give {LEAST_CELLS} to {LARGEST_CELLS}")
         x_length, y_length = self.lengths
-        if not all(np.isfinite(length) and length > 0.0 for length in self.lengths):
-            raise InputError(f"the plane has the lengths {x_length:g} and {y_length:g} m; give positive, finite ones")
         rows_to_columns = y_length / (ROW * x_length)
         columns = np.arange(FEWEST_COLUMNS, int(np.sqrt(FARTHEST * cells / rows_to_columns)) + 2)
         even = 2 if "y" in self.periodic else 1
@@ -81,4 +101,5 @@ def plane_of_study(case: Case, lengths: Sequence[float] | None, periodic: str | 
         if None in told:
             raise InputError(f"{case.name} does not tell its plane; give --plane LX,LY, its lengths in metres")
         lengths = [float(length) for length in told if length is not None]
-    return StudyPlane((float(lengths[0]), float(lengths[1])), periodic or StudyPlane.periodic)
+    told_by_case = case.periodic if isinstance(case, PlaneCase) else StudyPlane.periodic
+    return StudyPlane((float(lengths[0]), float(lengths[1])), periodic or told_by_case)

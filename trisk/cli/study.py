@@ -38,7 +38,8 @@ def mesh(
         ),
     ] = None,
     periodic: Annotated[
-        str | None, typer.Option("--periodic", help="Where the plane repeats itself: xy (default), x or none.")
+        str | None,
+        typer.Option("--periodic", help="Where the plane repeats itself: xy, x or none; by default as the case says."),
     ] = None,
     days: Annotated[
         float | None, typer.Option("--days", help="Simulated days; by default what the paper recommends.")

@@ -119,9 +119,7 @@ def test_cells_are_as_large_as_the_density_asks(start: str | None) -> None:
     assert ratio == pytest.approx(9.0, rel=0.1)
     assert seen[-1].residual <= 1e-3
     assert mesh_quality(mesh).sigma_avg > 0.8
-    np.testing.assert_array_equal(
-        mesh.mesh_density, density_on_plane("refined-circle", PLANE.lengths)(mesh.cell_points)
-    )
+    np.testing.assert_array_equal(mesh.mesh_density, density_on_plane(request, PLANE.lengths)(mesh.cell_points))
 
 
 def test_lloyds_method_lowers_the_energy() -> None:

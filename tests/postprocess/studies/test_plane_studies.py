@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from cases import find_case
+from mesh import mesh_quality
 from postprocess.reports.mesh_verdict import mesh_verdict
 from postprocess.reports.study_report import write_mesh_report
 from postprocess.studies import mesh_study
@@ -44,12 +45,25 @@ def test_hexagons_are_those_that_fit_and_are_nearest(plane: StudyPlane, asked: i
 )
 def test_planes_without_hexagons_are_refused(plane: StudyPlane, cells: int, words: str) -> None:
     with pytest.raises(InputError, match=words):
-        plane.require_cells(cells)
+        plane.require_cells("hexagons", cells)
+
+
+@pytest.mark.parametrize("family", ["cvt", "random"])
+def test_voronoi_meshes_fit_any_plane(family: str) -> None:
+    plane = StudyPlane((1e6, 1e6), "none")
+    plane.require_cells(family, 100)
+    mesh = plane.families[family].make(100)
+    assert mesh.n_cells == 100
+    assert mesh.area_cell.sum() == pytest.approx(1e12)
+    assert mesh_quality(mesh).residual < 1e-6
 
 
 def test_cases_tell_their_plane() -> None:
     assert plane_of_study(WAVE, None, None) == StudyPlane((WAVE.x_length, WAVE.y_length), "xy")
     assert plane_of_study(WAVE, (2.0, 3.0), "x") == StudyPlane((2.0, 3.0), "x")
+    box = plane_of_study(find_case("munk-box"), None, None)
+    assert box is not None
+    assert box.periodic == "none"
     assert plane_of_study(find_case("williamson2"), None, None) is None
     with pytest.raises(InputError, match="williamson2 is on a sphere, and --plane"):
         plane_of_study(find_case("williamson2"), LENGTHS, None)
