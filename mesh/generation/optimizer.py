@@ -70,6 +70,11 @@ class History:
         """Number of iterations, the starting points not counted."""
         return len(self.residual) - 1
 
+    def followed_by(self, later: "History") -> "History":
+        """What was reached here, and by a `later` descent that began at the last points."""
+        seconds = [self.seconds[-1] + each for each in later.seconds[1:]]
+        return History(self.energy + later.energy[1:], self.residual + later.residual[1:], self.seconds + seconds)
+
 
 LARGEST_TOLERANCE = 10.0
 """Mean spacings; no generator is as far from its centroid."""

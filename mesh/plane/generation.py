@@ -1,12 +1,13 @@
 """From the description of a mesh to the mesh of a plane."""
 
 import time
+from dataclasses import replace
 
 from mesh.arrays import Array
 from mesh.density.named import Density, uniform
 from mesh.density.planar import density_on_plane
 from mesh.errors import MeshError
-from mesh.generation.optimizer import Callback, Limits, Optimizer, ScvtResult
+from mesh.generation.optimizer import Callback, Iterate, Limits, Optimizer, ScvtResult
 from mesh.generation.scvt import cells_of, check_converged, limits_of
 from mesh.mesh_request import MeshRequest
 from mesh.plane.domain import Rectangle, rectangle
@@ -18,6 +19,11 @@ from mesh.plane.starts import starting_points
 from mesh.voronoi_mesh import VoronoiMesh
 
 METHODS = ("lbfgs", "lloyd")
+
+FIRST_ITERATIONS = 30
+"""Iterations without coarse grids. From random points, grids move whole regions at once, so that small triangles turn
+over and the triangulation has to be made anew: 20 times in 616 iterations on 40000 cells, and once in 474 after these.
+"""
 
 
 def mesh_on_plane(request: MeshRequest, callback: Callback | None = None) -> VoronoiMesh:
@@ -56,24 +62,46 @@ def converge_on_plane(
 ) -> ScvtResult:
     """Move generators `points` (n, 3), z = 0, to the centroids of their cells in a rectangle.
 
-    They are not brought back where they leave it. Raises `MeshError` for an unknown method, where points coincide, or
+    They are not brought back where they leave it. L-BFGS has coarse grids after its `FIRST_ITERATIONS`. Raises
+    `MeshError` for an unknown method, where points coincide, or
     where the density cannot be used.
     """
-    limits = Limits() if limits is None else limits
+    begin, limits = time.perf_counter(), Limits() if limits is None else limits
 
     def at_images(places: Array) -> Array:
         return density(plane.folded(places))
 
-    optimizer = Optimizer(
-        points,
-        method=method,
-        density=None if density is uniform else at_images,
-        cells=PlaneCells(points, plane),
-        spacing=plane.spacing(len(points)),
-        surface=plane.surface,
-        preconditioner=plane_preconditioner(points, plane) if method == "lbfgs" else None,
-    )
-    return optimizer.run(limits, callback)
+    def descent(points: Array, with_grids: bool) -> Optimizer:
+        return Optimizer(
+            points,
+            method=method,
+            density=None if density is uniform else at_images,
+            cells=PlaneCells(points, plane),
+            spacing=plane.spacing(len(points)),
+            surface=plane.surface,
+            preconditioner=plane_preconditioner(points, plane) if with_grids else None,
+        )
+
+    if method != "lbfgs" or limits.iterations <= FIRST_ITERATIONS:
+        return descent(points, False).run(limits, callback)
+    first = descent(points, False).run(replace(limits, iterations=FIRST_ITERATIONS), callback)
+    if first.reason != "iterations":
+        return first
+    left = replace(limits.since(begin), iterations=limits.iterations - FIRST_ITERATIONS)
+    second = descent(first.points, True).run(left, _counted_on(callback))
+    return replace(second, history=first.history.followed_by(second.history))
+
+
+def _counted_on(callback: Callback | None) -> Callback | None:
+    """The callback for iterations that follow the first ones; it has seen the points with which they begin."""
+    if callback is None:
+        return None
+
+    def call(iterate: Iterate) -> None:
+        if iterate.number > 0:
+            callback(replace(iterate, number=iterate.number + FIRST_ITERATIONS))
+
+    return call
 
 
 def require_possible_on_plane(request: MeshRequest) -> Rectangle:

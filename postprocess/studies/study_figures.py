@@ -121,6 +121,7 @@ def conservation_figure(members: Sequence[Member], heading: str) -> Figure:
                 linestyle=_style(member.scheme, schemes)["linestyle"],
                 label=f"{named(member.family, member.scheme, schemes)}, {member.mesh.n_cells} cells",
                 linewidth=1.0,
+                marker="o" if len(series["time"]) == 2 else None,
             )
         axes.set_title(f"|{name.replace('_', ' ')}|", fontsize=10)
         axes.set_xlabel("day", fontsize=9)

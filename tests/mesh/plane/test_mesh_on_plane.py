@@ -12,7 +12,7 @@ from mesh.discrete.quality import quality_and_note
 from mesh.discrete.walls import wall_edges
 from mesh.generation.optimizer import Limits, Optimizer
 from mesh.plane.domain import PERIODIC, Rectangle
-from mesh.plane.generation import converge_on_plane
+from mesh.plane.generation import FIRST_ITERATIONS, converge_on_plane
 from mesh.plane.grids import plane_preconditioner
 from mesh.plane.moving import PlaneCells
 from mesh.plane.plane_mesh import plane_mesh
@@ -133,6 +133,19 @@ def test_large_meshes_come_near_the_energy_of_hexagons() -> None:
     regular = Rectangle(16.0, 14.0 * 0.5 * np.sqrt(3.0))
     energy = converge_on_plane(starting_points(regular, 16 * 14), regular).history.energy[0]
     assert energy == pytest.approx(HEXAGON * (0.5 * np.sqrt(3.0)) ** 2 * 16 * 14, rel=1e-13)
+
+
+def test_iterations_are_counted_through_and_seen_once() -> None:
+    plane, seen = Rectangle(1.0, 1.0), []
+    points = starting_points(plane, 100, start="random")
+    result = converge_on_plane(
+        points, plane, limits=Limits(1e-9), callback=lambda at: seen.append((at.number, at.energy))
+    )
+    assert result.history.iterations > FIRST_ITERATIONS
+    assert [number for number, _ in seen] == list(range(result.history.iterations + 1))
+    assert [energy for _, energy in seen] == result.history.energy
+    assert (np.diff(result.history.seconds) >= 0.0).all()
+    assert converge_on_plane(points, plane, limits=Limits(1e-9, iterations=40)).history.iterations == 40
 
 
 @pytest.mark.parametrize("periodic", PERIODIC)
