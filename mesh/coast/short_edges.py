@@ -33,7 +33,7 @@ INNER_EDGE, COASTAL_EDGE = 0.12, 0.32
 LOOSE_TOLERANCE = 1e-4
 """Residual, in mean spacings, at which lengths of edges are known to some thousandths of a spacing."""
 
-ATTEMPTS = 6
+ATTEMPTS = 12
 """How often the whole sea is converged to its tolerance again."""
 
 SHAKES = 12
