@@ -42,6 +42,8 @@ def test_pixels_are_drawn_where_they_are(any_plane: VoronoiMesh) -> None:
 
 def test_spots_are_the_images_that_are_drawn(periodic_plane: VoronoiMesh) -> None:
     away = moved(periodic_plane, 0.4 * LENGTHS[0], -0.7 * LENGTHS[1])
+    scattered = np.arange(away.n_cells) % 3 * np.array(LENGTHS)[:, None]
+    away = replace(away, x_cell=away.x_cell + scattered[0], y_cell=away.y_cell - scattered[1])
     paper = PlanePaper(away)
     left, right, bottom, top = paper.box
     x, y = paper.spots(np.arange(away.n_cells))
