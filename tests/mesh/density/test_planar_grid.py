@@ -9,7 +9,7 @@ from mesh.arrays import Array
 from mesh.density.gridded import Shaping
 from mesh.density.planar import named_on_plane
 from mesh.density.planar_grid import read_density_on_plane
-from tests.mesh.density.density_files import write_file
+from tests.mesh.density.density_files import Variable, write_file
 
 X, Y = np.array([0.0, 1.0, 3.0, 4.0]), np.array([10.0, 20.0, 25.0])
 VALUES = 1.0 + X + 2.0 * Y[:, None] + 0.5 * X * Y[:, None]
@@ -20,7 +20,7 @@ def write_values(path: Path, turned: bool = False, step: tuple[int, int] = (1, 1
     """A file with the values at Y and X, whose order is that of the `step` of each."""
     values = values[:: step[0], :: step[1]]
     dimensions, values = (("x", "y"), values.T) if turned else (("y", "x"), values)
-    axes = {"x": (("x",), X[:: step[1]], {}), "y": (("y",), Y[:: step[0]], {})}
+    axes: dict[str, Variable] = {"x": (("x",), X[:: step[1]], {}), "y": (("y",), Y[:: step[0]], {})}
     return write_file(path, density=(dimensions, values, {}), **axes)
 
 
