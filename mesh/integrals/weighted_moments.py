@@ -241,10 +241,9 @@ class WeightedCells:
             _sum_cells(*mesh, cells, rows, density_at(self._density, nodes), self._is_flat, self._sums)
         empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
         if len(empty):
-            longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[empty[:1]]))
             raise MeshError(
-                f"the density is zero on the whole cell at longitude {longitude:.2f} and latitude {latitude:.2f} "
-                "degrees; give it a floor above zero"
+                f"the density is zero on the whole cell at {self._place_in_words(points[empty[0]])}; give it a floor "
+                "above zero"
             )
         return self._sums
 
@@ -263,6 +262,13 @@ class WeightedCells:
         """As `moments.evaluate`, under the density and without the fixed generators."""
         self.integrate(points, circumcenters, ring_starts, rings)
         _gradient_and_partials(self._sums, self._fixed, direction, old_scales, gradient, scales, partials)
+
+    def _place_in_words(self, point: Array) -> str:
+        """Where a generator (3,) is."""
+        if self._is_flat:
+            return f"x = {point[0]:.6g}, y = {point[1]:.6g} m"
+        longitude, latitude = np.degrees(to_lonlat(point))
+        return f"longitude {longitude:.2f} and latitude {latitude:.2f} degrees"
 
 
 def centroid_distances(sums: Array) -> Array:

@@ -150,3 +150,7 @@ def test_what_does_not_fit_is_refused() -> None:
         StommelBox(beta=0.0)
     with pytest.raises(InputError, match="viscosity is -1; it must be positive"):
         MunkBox(viscosity=-1.0)
+    moved = box(8)
+    object.__setattr__(moved, "y_cell", moved.y_cell - 1e5)
+    with pytest.raises(InputError, match=r"y_length = \d+\.?\d* m in y, but the mesh has cells from -45873\.4 to"):
+        StommelBox(y_length=1e6 * ROW).state_on(moved)

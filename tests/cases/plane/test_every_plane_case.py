@@ -8,7 +8,9 @@ import pytest
 from cases import PLANE_CASES, find_case
 from cases.parameters import units_and_meanings
 from mesh import VoronoiMesh, hexagon_mesh
+from mesh.integrals.quadrature import cell_means
 from mesh.parts.mesh_part import cut_part
+from swe import InputError
 
 
 def test_every_case_is_found_by_its_name() -> None:
@@ -69,3 +71,34 @@ def test_a_process_starts_its_part_as_the_whole(name: str) -> None:
         inner = part.mesh.cells_on_edge.min(axis=1) >= 0
         np.testing.assert_array_equal(mine.normal_velocity[inner], whole.normal_velocity[part.edges][inner])
         assert np.abs(mine.normal_velocity).max() > 0.0
+
+
+@pytest.mark.parametrize("name", ["inertia-gravity-wave", "manufactured", "dual-vortex"])
+def test_the_mesh_must_repeat_itself_as_the_case_does_in_y_too(name: str) -> None:
+    case = PLANE_CASES[name]()
+    x_length, y_length = (case.parameters()[f"{axis}_length"] for axis in "xy")
+    assert case.state_on(hexagon_mesh((x_length, 2.0 * y_length), (8, 16))).thickness.shape == (128,)
+    with pytest.raises(InputError, match=f"{name} repeats itself after y_length = "):
+        case.state_on(hexagon_mesh((x_length, 1.5 * y_length), (8, 12)))
+
+
+@pytest.mark.parametrize("name", ["inertia-gravity-wave", "kelvin-channel"])
+def test_a_period_that_misses_a_length_by_little_is_refused(name: str) -> None:
+    length = 1e6 * (1.0 + 1e-5)
+    mesh = hexagon_mesh((length, 0.5 * np.sqrt(3.0) * length), (8, 8), PLANE_CASES[name].periodic)
+    with pytest.raises(InputError, match="x_length = 1000000 m, but the mesh after 1000010 m in x"):
+        PLANE_CASES[name]().state_on(mesh)
+
+
+@pytest.mark.parametrize("name", PLANE_CASES)
+def test_thickness_is_sampled_as_asked_for(name: str) -> None:
+    mesh, case = plane_of(name), PLANE_CASES[name]()
+    point, mean = case.state_on(mesh, sampling="point").thickness, case.state_on(mesh, sampling="mean").thickness
+    np.testing.assert_array_equal(point, case.thickness(mesh.x_cell, mesh.y_cell))
+    np.testing.assert_array_equal(mean, cell_means(mesh, case.thickness))
+    assert np.abs(mean - point).max() > 1e-3 * np.ptp(point)
+
+
+@pytest.mark.parametrize("name", PLANE_CASES)
+def test_norms_are_those_of_the_departure_from_the_depth(name: str) -> None:
+    assert PLANE_CASES[name]().background_depth == PLANE_CASES[name]().parameters()["depth"]

@@ -105,3 +105,10 @@ def test_it_is_found_by_its_name_and_documented() -> None:
         InertiaGravityWave(waves_x=0, waves_y=0)
     with pytest.raises(InputError, match="depth is -1; it must be positive"):
         dataclasses.replace(InertiaGravityWave(), depth=-1.0)
+
+
+def test_the_period_is_in_days() -> None:
+    case, place = InertiaGravityWave(), np.array([2e5])
+    later = case.thickness(place, place, case.period_days * 86400.0)
+    np.testing.assert_allclose(later, case.thickness(place, place), rtol=0.0, atol=1e-9 * case.amplitude)
+    assert 0.01 < case.period_days < 1.0

@@ -48,6 +48,8 @@ def test_the_right_is_clockwise_of_the_way() -> None:
 def test_points_off_the_plane_are_told() -> None:
     points = np.array([[0.0, 0.0, 0.0], [5.0, 1.0, 1e-3]])
     assert PLANE.is_off(points, 1.0, 1e-6).tolist() == [False, True]
+    # The slack is beside the extent of the points, as round-off is.
+    assert PLANE.is_off(points * [1e4, 1e4, 1.0], 1.0, 1e-6).tolist() == [False, False]
 
 
 def test_which_surface_a_mesh_is_on_and_its_handles() -> None:

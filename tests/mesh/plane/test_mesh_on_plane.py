@@ -266,6 +266,14 @@ def test_what_cannot_be_made_is_told(request_: MeshRequest, words: str) -> None:
         mesh_on_plane(request_)
 
 
+def test_a_cell_without_density_is_told_by_its_place() -> None:
+    plane = Rectangle(*LENGTHS, "none")
+    points = starting_points(plane, 50, start="random")
+    cell = int(np.argmax(points[:, 0]))
+    with pytest.raises(MeshError, match=r"on the whole cell at x = 29\d+(\.\d+)?, y = \d+(\.\d+)? m; give it a floor"):
+        converge_on_plane(points, plane, density=lambda at: 1.0 * (at[:, 0] < points[cell, 0] - 4e4))
+
+
 def test_generators_on_walls_are_told() -> None:
     points = starting_points(Rectangle(*LENGTHS, "x"), 50)
     points[7, 1] = 0.0
