@@ -55,7 +55,9 @@ def _read_grid(file: netCDF4.Dataset, field: netCDF4.Variable, path: Path) -> tu
     for axis, name in enumerate(("y", "x")):
         unit = getattr(file[name], "units", "m")
         if unit not in METRES:
-            raise MeshError(f"{path}: {name} has the unit '{unit}'; give the places on a plane in metres, with the unit m")
+            raise MeshError(
+                f"{path}: {name} has the unit '{unit}'; give the places on a plane in metres, with the unit m"
+            )
         places = read_numbers(file[name], path)
         if places.ndim != 1 or len(places) < 2 or len(np.unique(places)) < len(places):
             raise MeshError(f"{path}: {name} must hold at least two places, all different, in one dimension")
