@@ -35,7 +35,8 @@ class Rectangle:
         for length in (self.width, self.height):
             if not SHORTEST <= length <= LONGEST:
                 raise MeshError(
-                    f"a length of the plane is {length:g} m; it must be {SHORTEST:g} m at least and {LONGEST:g} m at most"
+                    f"a length of the plane is {length:g} m; it must be {SHORTEST:g} m at least and {LONGEST:g} m "
+                    "at most"
                 )
 
     @cached_property
