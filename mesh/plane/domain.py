@@ -15,7 +15,7 @@ PERIODIC = ("xy", "x", "none")
 """Directions in which a plane may repeat itself; there are walls at the other ends."""
 
 SHORTEST, LONGEST = 1e-6, 1e15
-"""Lengths of planes, metres: far beyond these, areas and their products with other numbers leave the range of floats."""
+"""Lengths of planes, metres; far beyond these, areas and their products leave the range of floats."""
 
 
 @dataclass(frozen=True)
