@@ -21,7 +21,7 @@ import numpy as np
 from mesh.arrays import Array, by_blocks
 from mesh.errors import MeshError
 from mesh.geometry.arctangent import arctangent
-from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
+from mesh.geometry.sphere import arc_length, from_lonlat
 from mesh.geometry.surface import UNIT_SPHERE, Surface
 
 Density = Callable[[Array], Array]
