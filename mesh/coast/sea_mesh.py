@@ -36,7 +36,8 @@ def sea_mesh(sea: SeaCells, generators: Array, density: Density = uniform) -> Vo
     metrics = compute_metrics(generators, topology, at_walls, surface)
     named = {"density_name": name_of(density), "density_source": source_of(density)}
     radius = 0.0 if surface.is_flat else 1.0
-    return validated(topology, metrics, radius, mesh_density=density_at(density, generators), **named)
+    values = density_at(density, generators, surface)
+    return validated(topology, metrics, radius, mesh_density=values, **named)
 
 
 def _at_walls(sea: SeaCells, generators: Array, topology: Topology, portions: Portions, places: Index) -> AtWalls:

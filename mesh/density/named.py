@@ -21,7 +21,8 @@ import numpy as np
 from mesh.arrays import Array, by_blocks
 from mesh.errors import MeshError
 from mesh.geometry.arctangent import arctangent
-from mesh.geometry.sphere import arc_length, from_lonlat, to_lonlat
+from mesh.geometry.sphere import arc_length, from_lonlat
+from mesh.geometry.surface import UNIT_SPHERE, Surface
 
 Density = Callable[[Array], Array]
 
@@ -101,8 +102,8 @@ NAMED: dict[str, Density] = {
 }
 
 
-def density_at(density: Density, points: Array) -> Array:
-    """Values (m,) of a density at unit vectors (m, 3).
+def density_at(density: Density, points: Array, surface: Surface = UNIT_SPHERE) -> Array:
+    """Values (m,) of a density at points (m, 3) of a surface: unit vectors, or places on a plane.
 
     Takes what a user's function may give: any numeric type, lists, a column (m, 1), or one number for all points.
     Raises `MeshError` where the values are of another shape or type, negative or not finite.
@@ -121,17 +122,16 @@ def density_at(density: Density, points: Array) -> Array:
             f"the density gives values of shape {values.shape} at {len(points)} points; return one per point"
         )
     values = np.ascontiguousarray(values.reshape(len(points)), dtype=np.float64)
-    _check(values, points)
+    _check(values, points, surface)
     return values
 
 
-def _check(values: Array, points: Array) -> None:
+def _check(values: Array, points: Array, surface: Surface) -> None:
     """Raise `MeshError` where a value (m,) at points (m, 3) is negative or not finite."""
     wrong = np.flatnonzero(~(np.isfinite(values) & (values >= 0.0)))
     if len(wrong):
-        longitude, latitude = (np.degrees(angle[0]) for angle in to_lonlat(points[wrong[:1]]))
         raise MeshError(
-            f"the density is {values[wrong[0]]:g} at longitude {longitude:.2f} and latitude {latitude:.2f} degrees; "
+            f"the density is {values[wrong[0]]:g} at {surface.in_words(points[wrong[0]])}; "
             "it must be finite and not negative"
         )
 

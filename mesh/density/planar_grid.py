@@ -14,6 +14,9 @@ from mesh.density.named import Density
 from mesh.errors import MeshError
 from mesh.safe_files import dataset
 
+METRES = ("m", "metre", "metres", "meter", "meters")
+"""Units that places on a plane may have."""
+
 
 def read_density_on_plane(path: str | Path, variable: str, shaping: Shaping) -> FileDensity:
     """The density that `variable` of a file holds on a grid, bilinear between its values.
@@ -50,6 +53,11 @@ def _read_grid(file: netCDF4.Dataset, field: netCDF4.Variable, path: Path) -> tu
         values = values.T
     axes = {}
     for axis, name in enumerate(("y", "x")):
+        unit = getattr(file[name], "units", "m")
+        if unit not in METRES:
+            raise MeshError(
+                f"{path}: {name} has the unit '{unit}'; give the places on a plane in metres, with the unit m"
+            )
         places = read_numbers(file[name], path)
         if places.ndim != 1 or len(places) < 2 or len(np.unique(places)) < len(places):
             raise MeshError(f"{path}: {name} must hold at least two places, all different, in one dimension")

@@ -182,7 +182,7 @@ def _ways_to_plane_centroids(mesh: VoronoiMesh, density: Density) -> Array:
     starts, vertices = _vertex_rings(mesh)
     near = np.repeat(points, np.diff(starts), axis=0)
     corners = near + surface.shortest(mesh.vertex_points[vertices] - near)
-    cells = WeightedCells(lambda places: density(surface.onto(places)), mesh.n_cells, is_flat=True)
+    cells = WeightedCells(lambda places: density(surface.onto(places)), mesh.n_cells, surface=surface)
     sums = cells.integrate(points, corners, starts, np.arange(starts[-1], dtype=np.int32))
     distances: Array = np.linalg.norm(sums[:, 1:4], axis=1) / sums[:, 4]
     return distances

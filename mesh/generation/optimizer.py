@@ -206,7 +206,7 @@ class Optimizer:
         if self._weighted:
             # Plateaus are sought on the whole sphere, as finely as the number of points asks if these cover it.
             often = cells is None or fixed is None
-            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often, surface.is_flat).evaluate
+            self._evaluate = WeightedCells(density or uniform, len(points), fixed, often, surface).evaluate
             self._noise, self._least_curvature = RELATIVE_QUADRATURE_ERROR, LEAST_CURVATURE / len(points)
             self._patience = PATIENCE_UNDER_DENSITY
 

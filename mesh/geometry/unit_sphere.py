@@ -104,7 +104,7 @@ class UnitSphere:
     def in_words(self, point: Array) -> str:
         """Longitude and latitude."""
         longitude, latitude = np.degrees(to_lonlat(point))
-        return f"{longitude:.4g}, {latitude:.4g} degrees"
+        return f"longitude {longitude:.2f} and latitude {latitude:.2f} degrees"
 
     def axes(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
         """East and north."""

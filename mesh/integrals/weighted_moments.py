@@ -27,7 +27,7 @@ from mesh.density.plateaus import Plateaus, plateaus_of
 from mesh.density.scaling import within_range
 from mesh.errors import MeshError
 from mesh.geometry.cube import patch_of
-from mesh.geometry.sphere import to_lonlat
+from mesh.geometry.surface import UNIT_SPHERE, Surface
 from mesh.geometry.vectors import dot_product, outward, triple_product, vector_between, vector_to
 from mesh.integrals.moments import BLOCK, cell_moment
 
@@ -197,7 +197,7 @@ def _gradient_and_partials(
 class WeightedCells:
     """Integrals over Voronoi cells under a density; generators that are `fixed` (n,) do not move.
 
-    Cells are on the unit sphere or, if `is_flat`, in the plane z = 0, where x.M stands for the mass.
+    Cells are on the unit sphere or, of a flat surface, in the plane z = 0, where x.M stands for the mass.
 
     Where the density is extremely large or small, the integrals are those of a multiple of it. With `often`, for
     callers who integrate many times, plateaus of the density are sought first, where its values are then known.
@@ -209,11 +209,12 @@ class WeightedCells:
         n_cells: int,
         fixed: NDArray[np.bool_] | None = None,
         often: bool = False,
-        is_flat: bool = False,
+        surface: Surface = UNIT_SPHERE,
     ) -> None:
+        is_flat = surface.is_flat
         self._density = density if is_flat else within_range(density)
         self._plateaus = plateaus_of(self._density, n_cells) if often and not is_flat else None
-        self._is_flat = is_flat
+        self._surface, self._is_flat = surface, is_flat
         self._sums = np.empty((n_cells, 6))
         self._fixed = np.zeros(n_cells, bool) if fixed is None else fixed
         self._counts = np.empty(n_cells, np.int32)
@@ -238,12 +239,13 @@ class WeightedCells:
                 self._nodes = np.empty((ends[-1], 3))
             rows, nodes = ends - self._counts[cells], self._nodes[: ends[-1]]
             _quadrature_points(*mesh, cells, rows, self._is_flat, nodes)
-            _sum_cells(*mesh, cells, rows, density_at(self._density, nodes), self._is_flat, self._sums)
+            values = density_at(self._density, nodes, self._surface)
+            _sum_cells(*mesh, cells, rows, values, self._is_flat, self._sums)
         empty = np.flatnonzero(self._sums[:, 4] <= 0.0)
         if len(empty):
             raise MeshError(
-                f"the density is zero on the whole cell at {self._place_in_words(points[empty[0]])}; give it a floor "
-                "above zero"
+                f"the density is zero on the whole cell at {self._surface.in_words(points[empty[0]])}; "
+                "give it a floor above zero"
             )
         return self._sums
 
@@ -262,13 +264,6 @@ class WeightedCells:
         """As `moments.evaluate`, under the density and without the fixed generators."""
         self.integrate(points, circumcenters, ring_starts, rings)
         _gradient_and_partials(self._sums, self._fixed, direction, old_scales, gradient, scales, partials)
-
-    def _place_in_words(self, point: Array) -> str:
-        """Where a generator (3,) is."""
-        if self._is_flat:
-            return f"x = {point[0]:.6g}, y = {point[1]:.6g} m"
-        longitude, latitude = np.degrees(to_lonlat(point))
-        return f"longitude {longitude:.2f} and latitude {latitude:.2f} degrees"
 
 
 def centroid_distances(sums: Array) -> Array:

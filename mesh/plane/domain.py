@@ -1,6 +1,5 @@
 """Rectangles of the plane that repeat themselves, or have walls, in each direction."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,6 +13,9 @@ from mesh.plain import plain_number
 
 PERIODIC = ("xy", "x", "none")
 """Directions in which a plane may repeat itself; there are walls at the other ends."""
+
+SHORTEST, LONGEST = 1e-6, 1e15
+"""Lengths of planes, metres; far beyond these, areas and their products leave the range of floats."""
 
 
 @dataclass(frozen=True)
@@ -31,8 +33,11 @@ class Rectangle:
         if self.periodic not in PERIODIC:
             raise MeshError(f"a plane cannot be periodic in '{self.periodic}'; choose one of {', '.join(PERIODIC)}")
         for length in (self.width, self.height):
-            if not 0.0 < length < math.inf:
-                raise MeshError(f"a length of the plane is {length:g} m; it must be positive and finite")
+            if not SHORTEST <= length <= LONGEST:
+                raise MeshError(
+                    f"a length of the plane is {length:g} m; it must be {SHORTEST:g} m at least and {LONGEST:g} m "
+                    "at most"
+                )
 
     @cached_property
     def lengths(self) -> Array:

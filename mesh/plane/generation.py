@@ -1,5 +1,6 @@
 """From the description of a mesh to the mesh of a plane."""
 
+import math
 import time
 from dataclasses import replace
 
@@ -19,6 +20,9 @@ from mesh.plane.starts import starting_points
 from mesh.voronoi_mesh import VoronoiMesh
 
 METHODS = ("lbfgs", "lloyd")
+
+WIDEST = 10.0
+"""Times the shorter side of a plane that cells may be wide."""
 
 FIRST_ITERATIONS = 30
 """Iterations without coarse grids. From random points, grids move whole regions at once, so that small triangles turn
@@ -118,4 +122,17 @@ def require_possible_on_plane(request: MeshRequest) -> Rectangle:
         raise MeshError("a mesh on a plane is neither nested nor made well-centred; leave these options out")
     if request.method not in METHODS:
         raise MeshError(f"a mesh on a plane cannot use the method {request.method}; choose {' or '.join(METHODS)}")
+    if request.cells is not None and request.cells > 0:
+        _require_narrow(request.cells, plane)
     return plane
+
+
+def _require_narrow(cells: int, plane: Rectangle) -> None:
+    """Raise `MeshError` where cells would be far wider than the plane, across which all of them have images."""
+    side = float(plane.lengths.min())
+    widths = plane.spacing(cells) / side
+    if widths > WIDEST:
+        raise MeshError(
+            f"{cells} cells would be {widths:.3g} times as wide as the shorter side of the plane, {side:g} m; ask for at "
+            f"least {math.ceil(cells * (widths / WIDEST) ** 2)}, or for another plane"
+        )

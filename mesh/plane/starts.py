@@ -69,7 +69,7 @@ def random_points(plane: Rectangle, count: int, density: Density, power: float, 
     generator = np.random.default_rng(seed)
 
     def weight(points: Array) -> Array:
-        return density_at(density, points) ** power
+        return density_at(density, points, plane.surface) ** power
 
     bound = 1.0
     if density is not uniform:

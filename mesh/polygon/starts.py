@@ -56,6 +56,6 @@ def _drawn(walls: Walls, cells: int, density: Density, start: str, seed: int) ->
 
     def inside(places: Array) -> Array:
         points = places + corner
-        return np.where(walls.contains(points), density_at(density, points), 0.0)
+        return np.where(walls.contains(points), density_at(density, points, walls.surface), 0.0)
 
     return random_points(box, cells, inside, 1.0 if start == "random" else 0.5, seed) + corner

@@ -57,7 +57,8 @@ def test_quality_of_a_file_of_the_community(trisk: Call, tmp_path: Path) -> None
         (("--plane", LENGTHS), "a mesh on a plane needs cells; give --cells N, or --hexagons NX,NY"),
         (("--hexagons", "10,10", "--cells", 42), "--periodic and --hexagons go with --plane LX,LY"),
         (("--plane", LENGTHS, "--hexagons", "10,10", "--cells", 42), "only --plane and --periodic go with --hexagons"),
-        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast-width", 10), "--nested and --coast-width do not go with"),
+        (("--plane", LENGTHS, "--hexagons", "10,10", "--coast-width", 10), "--coast-width does not go with --plane"),
+        (("--plane", LENGTHS, "--cells", 42, "--coast-factor", 3), "--coast-factor does not go with --plane; leave"),
         (("--plane", LENGTHS, "--hexagons", "10,10", "--coast", "a.geojson"), "hexagons do not follow the walls"),
         (
             ("--plane", LENGTHS, "--cells", 42, "--coast", "a.geojson"),
@@ -66,7 +67,7 @@ def test_quality_of_a_file_of_the_community(trisk: Call, tmp_path: Path) -> None
         ((*IN_BOX, "--coast", "world-ocean"), "--coast is world-ocean; on a plane give a polygon in metres"),
         ((*IN_BOX, "--coast", "none.geojson"), "none.geojson: No such file or directory; give a GeoJSON file"),
         (("--plane", LENGTHS, "--hexagons", "10,1.5"), "give two whole numbers with a comma between them"),
-        (("--plane", "1e6", "--hexagons", "10,10"), "give two numbers with a comma between them"),
+        (("--plane", "nan,1e6", "--hexagons", "10,10"), "give two finite numbers with a comma between them"),
     ],
 )
 def test_what_cannot_be_made_is_told_in_a_line(

@@ -12,7 +12,7 @@ def pair_of(option: str, text: str, whole: bool = False) -> tuple[float, float]:
     except ValueError:
         first = second = math.nan
     if not (math.isfinite(first) and math.isfinite(second)) or (whole and (first % 1.0 or second % 1.0)):
-        kind = "whole numbers" if whole else "numbers"
+        kind = "whole numbers" if whole else "finite numbers"
         raise InputError(f"{option} is '{text}'; give two {kind} with a comma between them")
     return first, second
 

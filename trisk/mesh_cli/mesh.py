@@ -177,8 +177,9 @@ def mesh(
     require_format(file_format, None if cells is None else least_sizes(cells))
     require_possible_file(output)
     if is_on_plane(request):
-        if resume or nested is not None or coast_width is not None:
-            raise MeshError("--resume, --nested and --coast-width do not go with --plane; leave them out")
+        _require_no(
+            {"--resume": resume, "--nested": nested, "--coast-width": coast_width, "--coast-factor": coast_factor}
+        )
         make = mesh_on_plane if coast is None else _in_polygon(coast, request)
         require_possible_on_plane(request)
         with convergence_bar(limits.tolerance, not quiet and hexagons is None) as show:
@@ -208,6 +209,15 @@ def mesh(
         write_mesh(made.mesh, output, command_line(), file_format)
     if not quiet:
         print_quality(made.mesh, str(output))
+
+
+def _require_no(options: dict[str, object]) -> None:
+    """Raise `MeshError` if one of the options, by name, is given, as meshes on planes have none of them."""
+    from mesh import MeshError
+
+    for option, given in options.items():
+        if given is not None and given is not False:
+            raise MeshError(f"{option} does not go with --plane; leave it out")
 
 
 def _raised(width: float | None, factor: float | None) -> tuple[float, float] | None:

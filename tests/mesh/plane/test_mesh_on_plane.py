@@ -220,6 +220,18 @@ def test_files_without_places_are_told(tmp_path: Path) -> None:
         mesh_on_plane(MeshRequest(cells=100, plane=LENGTHS, density="refined-circle", density_power=2.0))
 
 
+def test_places_of_a_density_file_in_kilometres_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "field.nc"
+    with netCDF4.Dataset(path, "w") as file:
+        for name in ("x", "y"):
+            file.createDimension(name, 2)
+            places = file.createVariable(name, "f8", (name,))
+            places[:], places.units = [0.0, 300.0], "km"
+        file.createVariable("density", "f8", ("y", "x"))[:] = 1.0
+    with pytest.raises(MeshError, match="has the unit 'km'; give the places on a plane in metres"):
+        mesh_on_plane(MeshRequest(cells=100, plane=LENGTHS, density=str(path)))
+
+
 def test_coarse_grids_carry_constants_and_save_iterations() -> None:
     plane = Rectangle(2.0, 1.0, "x")
     points = starting_points(plane, 1000, start="random")
@@ -250,13 +262,22 @@ def test_coarse_grids_carry_constants_and_save_iterations() -> None:
         (MeshRequest(plane=LENGTHS), "needs cells; give --cells N, or --hexagons NX,NY"),
         (MeshRequest(cells=100, plane=(1.0, -2.0)), "a length of the plane is -2 m"),
         (MeshRequest(cells=100, plane=LENGTHS, periodic="y"), "cannot be periodic in 'y'; choose one of xy, x, none"),
+        (
+            MeshRequest(cells=20, plane=(1e6, 1.0), periodic="none"),
+            "240 times as wide as the shorter side .* at least 11548",
+        ),
         (MeshRequest(cells=5, plane=LENGTHS), "a mesh of 5 cells is too small; ask for at least 12"),
         (MeshRequest(cells=2, plane=LENGTHS, periodic="none"), "ask for at least 3"),
         (MeshRequest(cells=100, plane=LENGTHS, method="macqueen"), "cannot use the method macqueen; choose lbfgs or"),
         (MeshRequest(cells=100, plane=LENGTHS, start="icosahedral"), "cannot start from 'icosahedral'; choose one of"),
         (MeshRequest(cells=100, plane=LENGTHS, density="refined-box"), "no density named 'refined-box' on planes"),
         (MeshRequest(cells=100, plane=LENGTHS, density=lambda at: 0.0 * at[:, 0]), "zero everywhere it was tried"),
-        (MeshRequest(cells=100, plane=LENGTHS, density=lambda at: -at[:, 0]), "finite and not negative"),
+        (MeshRequest(cells=100, plane=LENGTHS, density=lambda at: -at[:, 0]), "at x = .* m; it must be finite and not"),
+        (MeshRequest(cells=100, plane=(1e300, 1e300)), "m; it must be 1e-06 m at least and 1e.15 m at most"),
+        (
+            MeshRequest(cells=100, plane=LENGTHS, start="rows", density=lambda at: 1.0 * (at[:, 0] > 2e5)),
+            "zero on the whole cell at x = .* m; give it a floor",
+        ),
         (MeshRequest(cells=100, plane=LENGTHS, well_centered=True), "neither nested nor made well-centred"),
         (MeshRequest(cells=200, plane=LENGTHS, start="random", max_iterations=2), "allow more iterations"),
     ],
