@@ -133,6 +133,6 @@ def _require_narrow(cells: int, plane: Rectangle) -> None:
     widths = plane.spacing(cells) / side
     if widths > WIDEST:
         raise MeshError(
-            f"{cells} cells would be {widths:.3g} times as wide as the shorter side of the plane, {side:g} m; ask for at "
-            f"least {math.ceil(cells * (widths / WIDEST) ** 2)}, or for another plane"
+            f"{cells} cells would be {widths:.3g} times as wide as the shorter side of the plane, {side:g} m; ask for "
+            f"at least {math.ceil(cells * (widths / WIDEST) ** 2)}, or for another plane"
         )
