@@ -76,4 +76,4 @@ def test_triangles_that_run_clockwise_have_negative_areas() -> None:
 
 def test_places_are_told_in_the_coordinates_of_their_surface() -> None:
     assert Plane(0.0, 0.0).in_words(np.array([2.5e5, 1.0, 0.0])) == "x = 250000, y = 1 m"
-    assert UnitSphere().in_words(np.array([0.0, 0.6, 0.8])) == "90, 53.13 degrees"
+    assert UnitSphere().in_words(np.array([0.0, 0.6, 0.8])) == "longitude 90.00 and latitude 53.13 degrees"
