@@ -25,7 +25,7 @@ class GeostrophicAdjustment(PlaneCase):
     """A fluid at rest whose surface has a step up at a quarter of x_length and a step down at three quarters.
 
     The surface is -a or a beside the steps, which a Gaussian of standard deviation `step_width` smooths. A current in
-    geostrophic balance stays along each, beside which the surface rises or falls as 1 - exp(-|x| / R), with
+    geostrophic balance stays along each, beside which the surface rises or falls as 1 - exp(-abs(x) / R), with
     R = sqrt(g H) / f; waves carry the rest away. Where steps are sharp and far apart, a third of the potential energy
     that is released stays in the currents.
 
