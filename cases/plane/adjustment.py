@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from cases.base import parameter
-from cases.plane.base import PlaneCase
+from cases.plane.base import ExactCase
 from cases.plane.lengths import require_periodic, require_periods
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
@@ -21,7 +21,7 @@ NEGLIGIBLE = 9.0
 
 
 @dataclass(frozen=True)
-class GeostrophicAdjustment(PlaneCase):
+class GeostrophicAdjustment(ExactCase):
     """A fluid at rest whose surface has a step up at a quarter of x_length and a step down at three quarters.
 
     The surface is -a or a beside the steps, which a Gaussian of standard deviation `step_width` smooths. A current in
@@ -39,7 +39,6 @@ class GeostrophicAdjustment(PlaneCase):
     reference: ClassVar[str] = "Gill (1976), J. Fluid Mech. 77, 603-621, https://doi.org/10.1017/S0022112076002280"
     recommended_days: ClassVar[float] = 1.0
 
-    depth: float = parameter(100.0, "m", "Depth H of the fluid at rest")
     amplitude: float = parameter(1e-3, "m", "Half of the height of the steps, a")
     x_length: float = parameter(8e6, "m", "Length in x after which the steps repeat themselves")
     step_width: float = parameter(1e5, "m", "Standard deviation of the Gaussian that smooths the steps")
@@ -54,16 +53,6 @@ class GeostrophicAdjustment(PlaneCase):
                 f"step_width is {self.step_width:g}; it must be at least {self.x_length / MOST_STEPS:g}, "
                 f"x_length / {MOST_STEPS:g}"
             )
-
-    @property
-    def has_exact_solution(self) -> bool:
-        """Yes on an f-plane, but for terms of the square of the amplitude."""
-        return self.beta == 0.0
-
-    @property
-    def background_depth(self) -> float:
-        """The depth: norms are those of the height of the surface."""
-        return self.depth
 
     @property
     def deformation_radius(self) -> float:

@@ -86,6 +86,23 @@ class PlaneCase(Case):
 
 
 @dataclass(frozen=True)
+class ExactCase(PlaneCase):
+    """A case on a plane whose solution is known on an f-plane; norms are those of the departure from the depth."""
+
+    depth: float = parameter(100.0, "m", "Depth H of the fluid at rest")
+
+    @property
+    def has_exact_solution(self) -> bool:
+        """Yes on an f-plane; in waves, but for terms of the square of the amplitude."""
+        return self.beta == 0.0
+
+    @property
+    def background_depth(self) -> float:
+        """The depth."""
+        return self.depth
+
+
+@dataclass(frozen=True)
 class StreamfunctionCase(PlaneCase):
     """A case on a plane whose flow does not diverge: its velocity on a mesh comes from the streamfunction at vertices.
 

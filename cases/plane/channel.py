@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from cases.base import parameter
-from cases.plane.base import PlaneCase
+from cases.plane.base import ExactCase
 from cases.plane.lengths import require_periodic, require_periods
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
@@ -15,7 +15,7 @@ from swe.errors import InputError
 
 
 @dataclass(frozen=True)
-class KelvinChannel(PlaneCase):
+class KelvinChannel(ExactCase):
     """A wave that the Coriolis force holds at the wall y = 0 of a channel along x, on an f-plane.
 
     The surface is a exp(-f y / c) cos(k (x - c t)) above the depth H, with c = sqrt(g H); the flow along x is g / c
@@ -39,16 +39,6 @@ class KelvinChannel(PlaneCase):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.require_positive("depth", "x_length", "wave_number", "coriolis_parameter")
-
-    @property
-    def has_exact_solution(self) -> bool:
-        """Yes on an f-plane, but for terms of the square of the amplitude."""
-        return self.beta == 0.0
-
-    @property
-    def background_depth(self) -> float:
-        """The depth: norms are those of the height of the surface."""
-        return self.depth
 
     @property
     def phase_speed(self) -> float:

@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from cases.base import parameter
-from cases.plane.base import PlaneCase
+from cases.plane.base import ExactCase
 from cases.plane.lengths import require_periods
 from mesh.arrays import Array
 from mesh.discrete.operators import normal_component
@@ -17,7 +17,7 @@ from swe.state import State
 
 
 @dataclass(frozen=True)
-class Manufactured(PlaneCase):
+class Manufactured(ExactCase):
     """Crests and eddies that move over a periodic f-plane, far from small, with the forcing that keeps them exact.
 
     With p = k x - w t and q = l y + w t, one wave in each direction,
@@ -47,16 +47,6 @@ class Manufactured(PlaneCase):
     def __post_init__(self) -> None:
         super().__post_init__()
         self.require_positive("depth", "period", "x_length", "y_length")
-
-    @property
-    def has_exact_solution(self) -> bool:
-        """Yes on an f-plane."""
-        return self.beta == 0.0
-
-    @property
-    def background_depth(self) -> float:
-        """The mean thickness: norms are those of the departure from it."""
-        return self.depth
 
     def require_mesh(self, mesh: VoronoiMesh) -> None:
         """See `PlaneCase`; the mesh must repeat itself after whole lengths of the case."""

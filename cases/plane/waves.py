@@ -7,7 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from cases.base import parameter
-from cases.plane.base import PlaneCase
+from cases.plane.base import ExactCase
 from cases.plane.lengths import require_periods
 from mesh.arrays import Array
 from mesh.voronoi_mesh import VoronoiMesh
@@ -16,7 +16,7 @@ from swe.errors import InputError
 
 
 @dataclass(frozen=True)
-class InertiaGravityWave(PlaneCase):
+class InertiaGravityWave(ExactCase):
     """A plane inertia-gravity (Poincare) wave on an f-plane that is periodic in both directions, known exactly.
 
     With the phase p = k x + l y - omega t, the surface is a cos(p) above the depth H, and
@@ -32,7 +32,6 @@ class InertiaGravityWave(PlaneCase):
     recommended_days: ClassVar[float] = 0.25
     convergence_order: ClassVar[float | None] = 1.95
 
-    depth: float = parameter(100.0, "m", "Depth H of the fluid at rest")
     amplitude: float = parameter(1e-3, "m", "Height a of the crests of the wave")
     x_length: float = parameter(1e6, "m", "Length in x that holds waves_x waves")
     y_length: float = parameter(5e5 * math.sqrt(3.0), "m", "Length in y that holds waves_y waves")
@@ -44,16 +43,6 @@ class InertiaGravityWave(PlaneCase):
         self.require_positive("depth", "x_length", "y_length")
         if self.waves_x == self.waves_y == 0:
             raise InputError("waves_x and waves_y are 0; one of them must be another whole number")
-
-    @property
-    def has_exact_solution(self) -> bool:
-        """Yes on an f-plane, but for terms of the square of the amplitude."""
-        return self.beta == 0.0
-
-    @property
-    def background_depth(self) -> float:
-        """The depth: norms are those of the height of the surface."""
-        return self.depth
 
     @property
     def wave_numbers(self) -> tuple[float, float]:

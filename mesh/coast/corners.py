@@ -62,7 +62,7 @@ def corners_and_faults(sea: SeaCells) -> tuple[Corners, NDArray[np.bool_]]:
     corners = _all_corners(sea)
     faulty = (sea.loops > 1) | (np.diff(corners.starts) < FEWEST_SIDES)
     faulty[corners.cells[corners.neighbours >= sea.n_cells]] = True
-    pairs, counts = _pairs_of_cells(corners, sea.n_cells)
+    pairs, counts = pairs_of_cells(corners.cells, corners.neighbours, sea.n_cells)
     faulty[pairs[counts > 1] // sea.n_cells] = True
     return corners, faulty
 
@@ -82,6 +82,13 @@ def following_rows(starts: Index) -> Index:
     following = np.arange(1, starts[-1] + 1)
     following[starts[1:] - 1] = starts[:-1]
     return following
+
+
+def preceding_rows(starts: Index) -> Index:
+    """The row (starts[-1],) before each round the rings that begin at `starts`, up to the last of these."""
+    preceding = np.arange(-1, starts[-1] - 1)
+    preceding[starts[:-1]] = starts[1:] - 1
+    return preceding
 
 
 @numba.njit(cache=True)
@@ -120,16 +127,16 @@ def _fill_corners(
 
 def _require_one_side_each(corners: Corners, sea: SeaCells) -> None:
     """Raise `MeshError` where a cell meets a neighbour along several sides."""
-    found, counts = _pairs_of_cells(corners, sea.n_cells)
+    found, counts = pairs_of_cells(corners.cells, corners.neighbours, sea.n_cells)
     if counts.max() > 1:
         cell, other = divmod(int(found[np.argmax(counts)]), sea.n_cells)
         raise _too_coarse(sea, f"cells {cell} and {other} meet on both sides of some land")
 
 
-def _pairs_of_cells(corners: Corners, n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def pairs_of_cells(cells: Index, neighbours: Index, n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Cell times `n_cells` plus neighbour of all sides between cells, each pair once, and how often there is each."""
-    inner = (corners.neighbours != COAST) & (corners.neighbours < n_cells)
-    pairs = corners.cells[inner].astype(np.int64) * n_cells + corners.neighbours[inner]
+    inner = (neighbours != COAST) & (neighbours < n_cells)
+    pairs = cells[inner].astype(np.int64) * n_cells + neighbours[inner]
     return np.unique(pairs, return_counts=True)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from mesh.arrays import Index
-from mesh.coast.corners import COAST, Corners, corners_of, following_rows
+from mesh.coast.corners import COAST, Corners, corners_of, following_rows, preceding_rows
 from mesh.coast.sea_cells import SeaCells
 from mesh.discrete.topology import FILL, edges_beside
 from mesh.voronoi_mesh import Topology
@@ -50,13 +50,6 @@ def connected(corners: Corners, cells_on_vertex: Index, vertex_of: Index) -> Top
     )
 
 
-def _preceding(corners: Corners) -> Index:
-    """Row (n_corners,) of the corner of the same cell before it."""
-    preceding = np.arange(-1, len(corners.places) - 1)
-    preceding[corners.starts[:-1]] = corners.starts[1:] - 1
-    return preceding
-
-
 def _vertices(sea: SeaCells, corners: Corners) -> tuple[Index, Index, Index]:
     """Places (n_vertices,) of the vertices, the cells (n_vertices, 3) at each, and the vertex of every corner."""
     used, first, inverse = np.unique(corners.places, return_index=True, return_inverse=True)
@@ -94,7 +87,7 @@ def _edges(corners: Corners) -> tuple[Index, Index]:
 def _rings(corners: Corners, edge_of: Index, vertex_of: Index) -> tuple[Index, Index, Index, Index]:
     """Sizes (n_cells,), and the cells across, edges and vertices (n_cells, max_edges), each from its lowest edge on."""
     sizes = np.diff(corners.starts).astype(np.int32)
-    before = _preceding(corners)
+    before = preceding_rows(corners.starts)
     lowest = np.minimum.reduceat(edge_of[before], corners.starts[:-1])
     begins = np.flatnonzero(edge_of[before] == np.repeat(lowest, sizes)) - corners.starts[:-1]
     place = np.arange(sizes.max())
@@ -113,5 +106,5 @@ def _edges_on_vertex(corners: Corners, cells_on_vertex: Index, vertex_of: Index,
     edges = np.full(cells_on_vertex.shape, FILL, np.int32)
     place = np.argmax(cells_on_vertex[vertex_of] == corners.cells[:, None], axis=1)
     edges[vertex_of, place] = edge_of
-    edges[vertex_of, (place + 1) % 3] = edge_of[_preceding(corners)]
+    edges[vertex_of, (place + 1) % 3] = edge_of[preceding_rows(corners.starts)]
     return edges

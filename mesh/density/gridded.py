@@ -5,6 +5,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import netCDF4
 import numpy as np
@@ -20,6 +21,8 @@ from mesh.errors import MeshError
 from mesh.geometry.sphere import from_lonlat, normalize
 from mesh.mesh_request import MeshRequest
 from mesh.safe_files import dataset
+
+Read = TypeVar("Read")
 
 DENSITY_VARIABLE = MeshRequest.density_variable
 SMOOTHING_NEIGHBOURS = 6
@@ -132,18 +135,26 @@ def read_density(path: str | Path, variable: str = DENSITY_VARIABLE, shaping: Sh
     """
     shaping = Shaping() if shaping is None else shaping
     path = Path(path)
+    field = read_with(_read_field, path, variable)
+    name = f"{path}: {variable}"
+    require_usable(field.values, shaping, name)
+    return FileDensity(_interpolated(field, shaping, name), path, variable, shaping, field.digest)
+
+
+def read_with(read: Callable[[netCDF4.Dataset, netCDF4.Variable, Path], Read], path: Path, variable: str) -> Read:
+    """What `read` makes of the open file of a density, and of its variable of this name.
+
+    Raises `MeshError` where the file or the variable cannot be used.
+    """
     if not path.is_file():
         raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
     try:
         with dataset(path) as file:
-            field = _read_field(file, named_variable(file, variable, path), path)
+            return read(file, named_variable(file, variable, path), path)
     except (OSError, RuntimeError, ValueError, IndexError) as error:
         if isinstance(error, MeshError):
             raise
         raise MeshError(f"{path}: holds no density that can be used ({error}); give a NetCDF file with one") from error
-    name = f"{path}: {variable}"
-    require_usable(field.values, shaping, name)
-    return FileDensity(_interpolated(field, shaping, name), path, variable, shaping, field.digest)
 
 
 def require_usable(values: Array, shaping: Shaping, name: str) -> None:

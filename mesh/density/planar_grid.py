@@ -8,11 +8,10 @@ import numpy as np
 from scipy.interpolate import RegularGridInterpolator
 
 from mesh.arrays import Array
-from mesh.density.field_coordinates import named_variable, read_numbers
-from mesh.density.gridded import FileDensity, Shaping, require_usable
+from mesh.density.field_coordinates import read_numbers
+from mesh.density.gridded import FileDensity, Shaping, read_with, require_usable
 from mesh.density.named import Density
 from mesh.errors import MeshError
-from mesh.safe_files import dataset
 
 METRES = ("m", "metre", "metres", "meter", "meters")
 """Units that places on a plane may have."""
@@ -25,15 +24,7 @@ def read_density_on_plane(path: str | Path, variable: str, shaping: Shaping) -> 
     the edges of the grid the nearest value holds. Raises `MeshError` where the file or the variable cannot be used.
     """
     path = Path(path)
-    if not path.is_file():
-        raise MeshError(f"{path}: there is no such file; give a NetCDF file with a density")
-    try:
-        with dataset(path) as file:
-            x, y, values = _read_grid(file, named_variable(file, variable, path), path)
-    except (OSError, RuntimeError, ValueError, IndexError) as error:
-        if isinstance(error, MeshError):
-            raise
-        raise MeshError(f"{path}: holds no density that can be used ({error}); give a NetCDF file with one") from error
+    x, y, values = read_with(_read_grid, path, variable)
     require_usable(values, shaping, f"{path}: {variable}")
     digest = hashlib.sha256()
     for array in (values, y, x):

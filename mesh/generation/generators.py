@@ -1,5 +1,7 @@
 """Starting points on the unit sphere: bisection of the icosahedron, the Fibonacci spiral, and random points."""
 
+from collections.abc import Callable
+
 import numba
 import numpy as np
 
@@ -126,11 +128,30 @@ def random_points(count: int, density: Density, generator: np.random.Generator) 
     """
     density = within_range(density)
     bound = DENSITY_MARGIN * largest_value(density)
+
+    def propose(size: int) -> Array:
+        return normalize(generator.normal(size=(size, 3)))
+
+    return drawn_by_rejection(count, propose, lambda points: density_at(density, points), bound, generator, 0.5)
+
+
+def drawn_by_rejection(
+    count: int,
+    propose: Callable[[int], Array],
+    weight: Density,
+    bound: float,
+    generator: np.random.Generator,
+    accepted: float,
+) -> Array:
+    """Points (count, 3) of those that `propose` draws evenly, each kept as likely as its weight is large.
+
+    No weight is larger than `bound`; `accepted` is the part that is kept at a guess.
+    """
     drawn: list[Array] = []
-    missing, accepted = count, 0.5
+    missing = count
     while missing > 0:
-        points = normalize(generator.normal(size=(int(1.2 * missing / accepted) + 100, 3)))
-        kept = points[generator.random(len(points)) * bound < density_at(density, points)]
+        points = propose(int(1.2 * missing / accepted) + 100)
+        kept = points[generator.random(len(points)) * bound < weight(points)]
         drawn.append(kept[:missing])
         missing -= len(drawn[-1])
         accepted = max(len(kept) / len(points), SMALLEST_ACCEPTANCE)

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mesh.arrays import Index
-from mesh.coast.corners import COAST, FEWEST_SIDES, Corners
+from mesh.coast.corners import COAST, FEWEST_SIDES, Corners, pairs_of_cells, preceding_rows
 from mesh.errors import MeshError
 from mesh.plane.images import Images
 from mesh.plane.moving import PlaneCells
@@ -35,7 +35,6 @@ class CellSides:
     cells_on_vertex: Index
     walls: Index
     centers: Index
-    wall_of_side: Index
 
 
 def sides_of(cells: PlaneCells) -> CellSides:
@@ -58,21 +57,22 @@ def sides_of(cells: PlaneCells) -> CellSides:
     if sizes.min() < FEWEST_SIDES:
         raise _too_few(f"cell {np.argmin(sizes)} has {sizes.min()} sides")
     starts = np.concatenate([[0], np.cumsum(sizes)])
-    before = np.arange(-1, len(cell) - 1)
-    before[starts[:-1]] = starts[1:] - 1
-    _require_one_side_each(cell, neighbour, wall, n_cells)
+    before = preceding_rows(starts)
+    neighbours = np.where(wall == INNER, neighbour, COAST).astype(np.int32)
+    pairs, counts = pairs_of_cells(cell, neighbours, n_cells)
+    if counts.max(initial=0) > 1:
+        one, other = divmod(int(pairs[np.argmax(counts)]), n_cells)
+        raise _too_few(f"cells {one} and {other} meet along two sides")
     around, walls = _vertices(cell, neighbour, wall, before)
     if (np.minimum(wall, wall[before]) >= 0)[wall == wall[before]].any():
         raise _too_few("a cell meets a wall twice")
     keys = np.column_stack([around, walls])
     found, first, vertex = np.unique(keys, axis=0, return_index=True, return_inverse=True)
-    neighbours = np.where(wall == INNER, neighbour, COAST).astype(np.int32)
     return CellSides(
         Corners(starts.astype(np.int32), vertex.astype(np.int32).ravel(), neighbours, cell),
         found[:, :3].astype(np.int32),
         found[:, 3:].astype(np.int32),
         triangle[first],
-        wall,
     )
 
 
@@ -117,15 +117,6 @@ def _vertices(cell: Index, neighbour: Index, wall: Index, before: Index) -> tupl
             on = (each >= 0) & (each // 2 == axis)
             walls[on, axis] = each[on]
     return np.where(inner[:, None], turned, on_wall), walls
-
-
-def _require_one_side_each(cell: Index, neighbour: Index, wall: Index, n_cells: int) -> None:
-    inner = wall == INNER
-    pairs = cell[inner].astype(np.int64) * n_cells + neighbour[inner]
-    found, counts = np.unique(pairs, return_counts=True)
-    if counts.max(initial=0) > 1:
-        one, other = divmod(int(found[np.argmax(counts)]), n_cells)
-        raise _too_few(f"cells {one} and {other} meet along two sides")
 
 
 def _too_few(what: str) -> MeshError:

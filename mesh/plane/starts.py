@@ -7,6 +7,7 @@ import numpy as np
 from mesh.arrays import Array
 from mesh.density.named import Density, density_at, uniform
 from mesh.errors import MeshError
+from mesh.generation.generators import DENSITY_MARGIN, drawn_by_rejection
 from mesh.mesh_request import MeshRequest
 from mesh.plane.domain import Rectangle
 from mesh.triangulation.ordering import hilbert_order
@@ -15,11 +16,6 @@ STARTS = ("rows", "random", "random-root")
 
 PROBES = 20_000
 """Points at which the largest value of a density is sought."""
-
-MARGIN = 1.05
-"""How much larger it may be between them."""
-
-SMALLEST_ACCEPTANCE = 1e-3
 
 FEWEST_PERIODIC, FEWEST_IN_BOX = 12, 3
 """Cells of planes that repeat themselves, whose triangles must be shorter than half a period, and of others."""
@@ -39,17 +35,22 @@ def starting_points(
     default under another density. Raises `MeshError` for too few cells, an unknown start, or a density that is negative
     or zero everywhere.
     """
-    fewest = FEWEST_PERIODIC if any(plane.repeats) else FEWEST_IN_BOX
-    if cells < fewest:
-        raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {fewest}")
-    start = start or ("rows" if density is uniform else "random-root")
-    if start not in STARTS:
-        raise MeshError(f"a mesh on a plane cannot start from '{start}'; choose one of {', '.join(STARTS)}")
+    start = named_start(start, cells, FEWEST_PERIODIC if any(plane.repeats) else FEWEST_IN_BOX, density)
     if start == "rows":
         points = rows_of_points(plane, cells)
     else:
         points = random_points(plane, cells, density, 1.0 if start == "random" else 0.5, seed)
     return np.ascontiguousarray(points[hilbert_order(plane.surface.curve_places(points))])
+
+
+def named_start(start: str | None, cells: int, fewest: int, density: Density) -> str:
+    """The name of the start, that of the default if it is None; raises `MeshError` as `starting_points` does."""
+    if cells < fewest:
+        raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {fewest}")
+    start = start or ("rows" if density is uniform else "random-root")
+    if start not in STARTS:
+        raise MeshError(f"a mesh on a plane cannot start from '{start}'; choose one of {', '.join(STARTS)}")
+    return start
 
 
 def rows_of_points(plane: Rectangle, cells: int) -> Array:
@@ -73,16 +74,11 @@ def random_points(plane: Rectangle, count: int, density: Density, power: float, 
 
     bound = 1.0
     if density is not uniform:
-        bound = MARGIN * float(weight(rows_of_points(plane, PROBES)).max())
+        bound = DENSITY_MARGIN * float(weight(rows_of_points(plane, PROBES)).max())
         if not bound > 0.0:
             raise MeshError("the density is zero everywhere it was tried; give one that is positive")
-    drawn: list[Array] = []
-    missing, accepted = count, 1.0
-    while missing > 0:
-        places = generator.uniform(0.0, plane.lengths, (int(1.2 * missing / accepted) + 100, 2))
-        points = np.column_stack([places, np.zeros(len(places))])
-        kept = points[generator.random(len(points)) * bound <= weight(points)]
-        drawn.append(kept[:missing])
-        missing -= len(drawn[-1])
-        accepted = max(len(kept) / len(points), SMALLEST_ACCEPTANCE)
-    return np.concatenate(drawn)
+
+    def propose(size: int) -> Array:
+        return np.column_stack([generator.uniform(0.0, plane.lengths, (size, 2)), np.zeros(size)])
+
+    return drawn_by_rejection(count, propose, weight, bound, generator, 1.0)

@@ -6,10 +6,9 @@ import numpy as np
 
 from mesh.arrays import Array
 from mesh.density.named import Density, density_at, uniform
-from mesh.errors import MeshError
 from mesh.mesh_request import MeshRequest
 from mesh.plane.domain import Rectangle
-from mesh.plane.starts import FEWEST_IN_BOX, STARTS, random_points, rows_of_points
+from mesh.plane.starts import FEWEST_IN_BOX, named_start, random_points, rows_of_points
 from mesh.polygon.walls import Walls
 from mesh.triangulation.ordering import hilbert_order
 
@@ -21,11 +20,7 @@ def starting_points(
 
     Raises `MeshError` for too few cells, an unknown start, or a density that is negative or zero everywhere.
     """
-    if cells < FEWEST_IN_BOX:
-        raise MeshError(f"a mesh of {cells} cells is too small; ask for at least {FEWEST_IN_BOX}")
-    start = start or ("rows" if density is uniform else "random-root")
-    if start not in STARTS:
-        raise MeshError(f"a mesh on a plane cannot start from '{start}'; choose one of {', '.join(STARTS)}")
+    start = named_start(start, cells, FEWEST_IN_BOX, density)
     points = _rows(walls, cells) if start == "rows" else _drawn(walls, cells, density, start, seed)
     return np.ascontiguousarray(points[hilbert_order(walls.surface.curve_places(points))])
 
