@@ -28,7 +28,7 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
         "title": axes.get_title(),
         "labels": [axes.get_xlabel(), axes.get_ylabel()],
         "scales": [axes.get_xscale(), axes.get_yscale()],
-        "limits": [*axes.get_xlim(), *axes.get_ylim()],
+        "limits": [*axes.get_xlim(), *_y_limits(axes)],
         "shown": axes.axison,
         "aspect": str(axes.get_aspect()),
         "lines": [_of_line(line) for line in axes.get_lines()],
@@ -42,6 +42,13 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
         "grid": [line.get_alpha() for line in axes.get_xgridlines()[:1] if line.get_visible()],
         "ticks": [label.get_text() for label in axes.get_xticklabels()] if axes.get_xscale() == "linear" else [],
     }
+
+
+def _y_limits(axes: Axes) -> tuple[float, float]:
+    """Those of `axes`, without matplotlib's margin where it follows round-off, which another processor leaves elsewhere."""
+    lowest, highest = axes.get_ylim()
+    follows_round_off = axes.get_yscale() == "log" and axes.get_autoscaley_on() and lowest < SMALLEST
+    return (lowest, float(axes.dataLim.ymax)) if follows_round_off else (lowest, highest)
 
 
 def _tick_sizes(axes: Axes) -> list[float]:
