@@ -64,8 +64,10 @@ def colour_of(tab: Any, value: float) -> np.ndarray:
     return table[round((value - low) / (high - low) * 255)]
 
 
-def nearest(points: np.ndarray, place: dict[str, float]) -> int:
-    return int(np.argmax(normalize(points) @ from_lonlat(np.array(place["lon"]), np.array(place["lat"]))))
+def nearest(points: np.ndarray, place: dict[str, float]) -> np.ndarray:
+    """Numbers of the generators nearest to a place: more than one on an edge, where round-off decides."""
+    along = normalize(points) @ from_lonlat(np.array(place["lon"]), np.array(place["lat"]))
+    return np.flatnonzero(along > along.max() - 1e-12)
 
 
 @pytest.mark.parametrize("view", ["globe", "map"])
@@ -85,7 +87,7 @@ def test_the_value_under_the_pointer_is_that_of_the_file(
     seen = set()
     for right, up in [(0, 0), (90, 60), (-120, -40), (30, -150), (10, 170)]:
         reading = reading_at(tab, x + right, y - up)
-        assert reading["number"] == nearest(small_mesh.cell_points, reading["place"])
+        assert reading["number"] in nearest(small_mesh.cell_points, reading["place"])
         assert abs(reading["values"][0] - values[reading["number"]]) <= 0.5 * step * (1 + 1e-6)
         assert f"cell {reading['number']} at" in tab.locator("#reading").inner_text()
         assert "m s⁻¹" in tab.locator("#reading").inner_text()
@@ -194,7 +196,7 @@ def test_land_is_empty(open_page: OpenPage, sea_run: Path, tmp_path: Path) -> No
     assert np.count_nonzero(inside & (np.abs(colours - 0xCC).max(axis=2) <= 3)) == 0
     tab.locator("#projection").select_option("map")
     reading = reading_at(tab, x + 300, y)
-    assert reading["number"] == nearest(open_run(sea_run).mesh.cell_points, reading["place"])
+    assert reading["number"] in nearest(open_run(sea_run).mesh.cell_points, reading["place"])
 
 
 def test_two_runs_have_one_camera_and_one_slider(
