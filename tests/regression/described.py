@@ -45,7 +45,7 @@ def _of_axes(axes: Axes) -> dict[str, Any]:
 
 
 def _y_limits(axes: Axes) -> tuple[float, float]:
-    """Those of `axes`, without matplotlib's margin where it follows round-off, which another processor leaves elsewhere."""
+    """Those of `axes`, without the margin where it follows round-off, which another processor leaves elsewhere."""
     lowest, highest = axes.get_ylim()
     follows_round_off = axes.get_yscale() == "log" and axes.get_autoscaley_on() and lowest < SMALLEST
     return (lowest, float(axes.dataLim.ymax)) if follows_round_off else (lowest, highest)
