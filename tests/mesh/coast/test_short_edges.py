@@ -1,6 +1,7 @@
 """Edges of nearly no length, and the meshes without them."""
 
 import time
+from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -10,7 +11,7 @@ from mesh import MeshError, MeshWarning
 from mesh.arrays import Array
 from mesh.coast import short_edges
 from mesh.coast.coastline import Coastline
-from mesh.coast.generation import SeaDescent, region_mesh
+from mesh.coast.generation import SeaDescent, converge_at_sea, region_mesh
 from mesh.coast.raised import RaisedDensity
 from mesh.coast.sea_cells import SeaResult
 from mesh.coast.sea_mesh import sea_mesh
@@ -26,7 +27,7 @@ from mesh.coast.short_edges import (
 from mesh.density.named import Density, uniform
 from mesh.discrete.walls import wall_edges
 from mesh.generation.optimizer import LARGEST_TOLERANCE, Limits
-from mesh.geometry.sphere import arc_length, hexagon_spacing
+from mesh.geometry.sphere import arc_length, hexagon_spacing, normalize
 from mesh.mesh_request import MeshRequest
 from mesh.regions.find import find_region
 from tests.mesh.coast.shores import POLE, converged, wavy_sea
@@ -36,7 +37,7 @@ CELLS = 275
 
 TOLERANCE = 1e-6
 
-WIDE, LOOSE = 2300, 1e-3
+WIDE, LOOSE = 2306, 1e-3
 """Cells of a sea in which patches are small, and a tolerance at which they need not touch the rest of it."""
 
 
@@ -151,15 +152,17 @@ def wide() -> Coastline:
 def found_in_wide(wide: Coastline) -> SeaResult:
     """A sea of 50 cells from side to side, more centroidal than will be asked.
 
-    Its shortest edges have 0.191 and 0.200 spacings and are far from one another; the next one has 0.204.
+    Its shortest edges have 0.129 and 0.146 spacings and are far from one another; the next one has 0.170. It begins with
+    generators that `converged(wide, WIDE, 0.01 * LOOSE)` led to once: where they lead depends on round-off.
     """
-    return converged(wide, WIDE, 0.01 * LOOSE)
+    points = normalize(np.load(Path(__file__).with_name("wide_sea.npy")).astype(float))
+    return converge_at_sea(wide, points, "lbfgs", uniform, Limits(0.01 * LOOSE))
 
 
 def test_cells_far_from_a_short_edge_stay_where_they_are(
     monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
 ) -> None:
-    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.195)
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.137)
     before, points = lengths_of(found_in_wide), found_in_wide.result.points
     better = without_short_edges(found_in_wide, descent_of(wide), LOOSE)
     assert lengths_of(better).lacking == 0.0
@@ -186,7 +189,7 @@ class Spoiling(SeaDescent):
 def test_patches_are_taken_one_by_one(
     monkeypatch: pytest.MonkeyPatch, wide: Coastline, found_in_wide: SeaResult
 ) -> None:
-    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.202)
+    monkeypatch.setattr(short_edges, "INNER_EDGE", 0.158)
     lengths, points = lengths_of(found_in_wide), found_in_wide.result.points
     descent = Spoiling(wide, uniform, Limits(LOOSE), time.perf_counter())
     mended = mended_points(found_in_wide, lengths, descent, LOOSE, np.random.default_rng(0))
