@@ -19,15 +19,16 @@ def require_periodic(case: PlaneCase, mesh: VoronoiMesh) -> None:
 
 
 def require_periods(case: PlaneCase, mesh: VoronoiMesh, **lengths: float) -> None:
-    """Raise `InputError` unless the plane repeats itself after whole `lengths`, m, in the directions of their names.
+    """Raise `InputError` unless the plane repeats itself as that of the case, after whole `lengths`, m.
 
     Each is the parameter of the case called x_length or y_length.
     """
+    require_periodic(case, mesh)
     for axis, length in lengths.items():
         period = getattr(mesh, f"{axis}_period")
         repeats = period / length
         if not (repeats > 0.5 and abs(repeats - round(repeats)) <= FIT * repeats):
             raise InputError(
                 f"{case.name} repeats itself after {axis}_length = {length:.10g} m, but the mesh after "
-                f"{period:.10g} m in {axis} (0 for a wall); set {axis}_length, or take another mesh"
+                f"{period:.10g} m in {axis}; set {axis}_length, or take another mesh"
             )

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
-from mesh.discrete.walls import has_walls
+from mesh.discrete.walls import has_walls, wall_edges
 from mesh.geometry.sphere import arc_length, dot, normalize
 from mesh.geometry.surface import surface_of
 from mesh.integrals.moments import masses_and_moments
@@ -18,6 +18,9 @@ from mesh.shown import Rows, Shown
 from mesh.triangulation.moving import Triangulation
 from mesh.voronoi_mesh import VoronoiMesh
 
+STRAIGHT = 1e-6
+"""Part of the area of a cell up to which it is that of its polygon: files have seven digits or more."""
+
 
 @dataclass(frozen=True, repr=False)
 class Quality(Shown):
@@ -26,8 +29,9 @@ class Quality(Shown):
     `mu` is the largest over the smallest distance between neighbours; `sigma` of a cell its shortest over its
     longest distance to a neighbour; `q` of a triangle with sides a, b, c is (b+c-a)(c+a-b)(a+b-c)/(abc), one if
     equilateral. Distances are chords. `residual` is the largest distance between a generator that was free to move and
-    the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known;
-    `obtuse` counts Delaunay triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
+    the constrained centroid of its cell, in mean spacings, and not a number where the density cannot be known; cells
+    with a bent wall do not count (`bent_cells`), as a mesh does not tell where that runs. `obtuse` counts Delaunay
+    triangles with an obtuse angle; `area_ratio` is the largest over the smallest cell area.
     Beside walls only neighbours and triangles that are there count, and cells as they are; what nothing counts for is
     not a number.
     """
@@ -67,6 +71,9 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
     notes = [note] if note else []
     if mesh.fixed_cells is not None:
         notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held fixed are not counted")
+    bent = np.count_nonzero(bent_cells(mesh))
+    if bent:
+        notes.append(f"cells in which a wall bends are not counted ({bent}), as the mesh does not tell where")
     return _measured(mesh, density), "; ".join(notes)
 
 
@@ -153,11 +160,28 @@ def obtuse_triangles(mesh: VoronoiMesh, chords: Array | None = None) -> NDArray[
 
 
 def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
-    """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings."""
+    """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings.
+
+    Not a number where the centroid of no cell is known.
+    """
     distances, spacing = _centroid_distances(mesh, density)
-    if mesh.fixed_cells is not None:
-        distances = distances[~mesh.fixed_cells]
-    return float(distances.max(initial=0.0)) / spacing
+    known = ~bent_cells(mesh)
+    if not known.any():
+        return float("nan")
+    free = known if mesh.fixed_cells is None else known & ~mesh.fixed_cells
+    return float(distances[free].max(initial=0.0)) / spacing
+
+
+def bent_cells(mesh: VoronoiMesh) -> NDArray[np.bool_]:
+    """Which cells (n_cells,) have a wall that bends between its vertices, so that their areas are not of polygons."""
+    bent, surface = np.zeros(mesh.n_cells, bool), surface_of(mesh)
+    cells = np.unique(mesh.cells_on_edge[wall_edges(mesh)].max(axis=1))
+    ring = np.where(mesh.on_ring[cells], mesh.vertices_on_cell[cells], mesh.vertices_on_cell[cells, :1])
+    corners = mesh.vertex_points[ring] / mesh.length_unit
+    centres = mesh.cell_points[cells, None, :] / mesh.length_unit
+    areas = surface.triangle_area(centres, corners, np.roll(corners, -1, axis=1)).sum(axis=1) * mesh.length_unit**2
+    bent[cells] = np.abs(areas - mesh.area_cell[cells]) > STRAIGHT * mesh.area_cell[cells]
+    return bent
 
 
 def centroid_offsets(mesh: VoronoiMesh, density: Density) -> Array:

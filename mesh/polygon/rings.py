@@ -57,8 +57,12 @@ def _points(ring: Points, name: str) -> Array:
         raise MeshError(f"{name} is no list of points ({error}); give x and y of each, in metres") from error
     if len(points) > 1 and (points[0] == points[-1]).all():
         points = points[:-1]
-    if len(points) < FEWEST_POINTS or not np.isfinite(points).all():
-        raise MeshError(f"{name} has {len(points)} points; give at least {FEWEST_POINTS}, all finite")
+    if len(points) < FEWEST_POINTS:
+        raise MeshError(f"{name} has {len(points)} points; give at least {FEWEST_POINTS}")
+    wrong = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(wrong):
+        x, y = points[wrong[0]]
+        raise MeshError(f"{name} has its point {wrong[0]} at x = {x:g}, y = {y:g}; give finite numbers, in metres")
     repeated = np.flatnonzero((points == np.roll(points, -1, axis=0)).all(axis=1))
     if len(repeated):
         raise MeshError(f"{name} has its point {repeated[0]} twice in a row; leave one of them out")

@@ -45,7 +45,9 @@ def sampled(field: Field, longitude: Array, latitude: Array) -> Array:
 def require_field(what: str, field: Field) -> None:
     """Raise `InputError` unless a field is a function or a finite number."""
     if not callable(field) and not math.isfinite(plain_number(what, field, InputError)):
-        raise InputError(f"{what} is {field}; give a finite number, or a function of longitude and latitude")
+        raise InputError(
+            f"{what} is {field}; give a finite number, or a function of longitude and latitude, on a plane of x and y"
+        )
 
 
 def coefficient(what: str, value: float, positive: bool = False) -> float:

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from mesh import MeshError
+from mesh import MeshError, mesh_quality
 from mesh.coast.generation import COAST_SPACINGS, coast_smoothing, region_mesh, spacing_before_coastline
+from mesh.discrete.quality import bent_cells
 from mesh.discrete.walls import wall_edges
 from mesh.mesh_request import MeshRequest
 from mesh.regions.find import find_region
@@ -27,6 +28,10 @@ def test_a_box_is_filled_up_to_its_sides(method: str) -> None:
     assert np.abs(region.distance(mesh.vertex_points[mesh.boundary_vertex == 1])).max() < 0.5 * COAST_SPACINGS * spacing
     assert np.abs(mesh.area_cell / mesh.area_cell.mean() - 1.0).max() < 0.4
     assert len(wall_edges(mesh)) > 30
+    # Of the cells whose coast is straight; the box has corners, which are smoothed, and parallels.
+    assert 4 <= np.count_nonzero(bent_cells(mesh)) < len(wall_edges(mesh)) + 1
+    assert mesh_quality(mesh).residual == pytest.approx(mesh_quality(mesh.scaled(6371220.0)).residual, rel=1e-6)
+    assert mesh_quality(mesh).residual <= residuals[-1] + 1e-9
 
 
 def test_a_density_refines_part_of_the_sea() -> None:

@@ -152,8 +152,8 @@ def wide() -> Coastline:
 def found_in_wide(wide: Coastline) -> SeaResult:
     """A sea of 50 cells from side to side, more centroidal than will be asked.
 
-    Its shortest edges have 0.129 and 0.146 spacings and are far from one another; the next one has 0.170. It begins with
-    generators that `converged(wide, WIDE, 0.01 * LOOSE)` led to once: where they lead depends on round-off.
+    Its shortest edges have 0.129 and 0.146 spacings and are far from one another; the next one has 0.170. It begins
+    with generators that `converged(wide, WIDE, 0.01 * LOOSE)` gave once: which it gives depends on round-off.
     """
     points = normalize(np.load(Path(__file__).with_name("wide_sea.npy")).astype(float))
     return converge_at_sea(wide, points, "lbfgs", uniform, Limits(0.01 * LOOSE))
