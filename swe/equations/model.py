@@ -174,7 +174,7 @@ class ShallowWaterModel(Shown):
         self._update_thickness_tendency(result.thickness)
         self._update_velocity_tendency(state, result.normal_velocity)
         for term in self.terms_in_stages:
-            self._add(term, state, time, result)
+            self.add_term(term, state, time, result)
 
     def thickness_tendency(self, state: State, result: Array, time: float = 0.0) -> None:
         """Write dh/dt (n_cells,), m/s, of `state` at `time`, s, into `result`: one half of `tendency`."""
@@ -200,11 +200,11 @@ class ShallowWaterModel(Shown):
         if q_edge.any():
             self._update_flux(state)
             self._update_velocity(nothing, nothing, nothing, q_edge, 0.0, result.normal_velocity)
-        self._add(term, state, time, result)
+        self.add_term(term, state, time, result)
         return result
 
-    def _add(self, term: Term, state: State, time: float, result: State) -> None:
-        """Add `term` to the tendency; nothing accelerates at walls."""
+    def add_term(self, term: Term, state: State, time: float, result: State) -> None:
+        """Add `term` at `state` and `time`, s, to the tendency `result`; nothing accelerates at walls."""
         term.add(self.mesh, state, time, result)
         result.normal_velocity[self._walls] = 0.0
 

@@ -34,7 +34,7 @@ class FusedForwardBackward(FusedMethod):
         )
         return taken
 
-    def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
+    def _steps_by_stages(self, y: tuple[Array, Array], time_step: float, steps: int, time: float) -> int:
         """The passes of `forward_backward_steps`, with an exchange of values between processes after each."""
         moving, fixed = not self.model.prescribed_wind, (self.tiles.arrays, self._scratch, self.model.gravity)
         (h, u), ((h1, u1), (h2, u2)), following = y, self._stages, self._spare

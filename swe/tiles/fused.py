@@ -9,25 +9,40 @@ from swe.equations.consistent import Consistent
 from swe.equations.kernels import count_unsound
 from swe.equations.model import ShallowWaterModel
 from swe.equations.schemes import Ringler2010
+from swe.equations.terms import Term
 from swe.equations.upwinding import Upwinding
 from swe.errors import InputError
 from swe.integrators import STEPPINGS, Integrator
 from swe.parallel.processes import anywhere
 from swe.state import State
 from swe.tiles import tile_kernels
+from swe.tiles.added_terms import AddedTerms
 from swe.tiles.cutting import Tiles, build_tiles
 from swe.tiles.layout import LANES, MIRROR
+
+LAST = 1.0 / 6.0
+"""Weight of the last slope in a step; the stages before are in the states at which slopes were taken."""
 
 
 def why_not_fused(model: ShallowWaterModel, integrator: Integrator = "rk4") -> str | None:
     """What the loops over tiles do not compute of a model, as part of a sentence; None if they compute all of it."""
-    known = () if STEPPINGS[integrator].forward_backward else (Anticipation, Upwinding)
-    names = [term.name for term in model.terms_in_stages if type(term) not in known]
+    passes = STEPPINGS[integrator].forward_backward
+    names = [term.name for term in model.terms_in_stages if passes or not (_in_loops(term) or _is_added(term))]
     if names:
         return f"the tendency has the term{'s' if len(names) > 1 else ''} {' and '.join(names)}"
     if isinstance(model.scheme, Consistent) and STEPPINGS[integrator].forward_backward:
         return f"the scheme is {model.scheme.name} and the integrator {integrator}"
     return None if isinstance(model.scheme, Ringler2010 | Consistent) else f"the scheme is {model.scheme.name}"
+
+
+def _in_loops(term: Term) -> bool:
+    """Whether the loops over tiles compute a term themselves."""
+    return type(term) in (Anticipation, Upwinding)
+
+
+def _is_added(term: Term) -> bool:
+    """Whether a term is one to add to what the loops compute (`AddedTerms`): it changes no potential vorticity."""
+    return type(term).change_vorticity is Term.change_vorticity
 
 
 class FusedMethod:
@@ -50,7 +65,7 @@ class FusedMethod:
             model.gravity,
             sides=sides,
             with_border=with_border,
-            changed_vorticity=bool(model.terms_in_stages),
+            changed_vorticity=any(map(_in_loops, model.terms_in_stages)),
             own=model.processes.own,
             wall_slip=model.wall_slip,
         )
@@ -58,6 +73,7 @@ class FusedMethod:
         self._scratch = _scratch(self.tiles)
         self._parts = None if sides is None else _parts_of_flux(self.tiles)
         self._changed = _changed(model, self.tiles)
+        self._added = AddedTerms(model, [term for term in model.terms_in_stages if _is_added(term)], self.tiles)
         cells, edges = model.mesh.n_cells, model.mesh.n_edges
         # Edges at the rim of a part are in no tile and keep their zeros.
         self._stages = [(np.zeros(cells), np.zeros(edges)) for _ in range(stages)]
@@ -86,11 +102,13 @@ class FusedMethod:
     def advance(self, state: State, time_step: float, steps: int = 1, time: float = 0.0) -> int:
         """Advance `state` in place by `steps` steps of `time_step` seconds, fewer if one leaves `unsound` values.
 
-        Returns the number of steps taken. Nothing depends on `time`.
+        `time` is that of the state, s since the start. Returns the number of steps taken.
         """
         y = self._in_order(state)
-        steps_taken = self._steps if self.model.processes.alone else self._steps_with_exchange
-        taken = steps_taken(y, time_step, steps)
+        if self.model.processes.alone and not self._added:
+            taken = self._steps(y, time_step, steps)
+        else:
+            taken = self._steps_by_stages(y, time_step, steps, time)
         self._put_back(*y, state)
         return taken
 
@@ -98,8 +116,8 @@ class FusedMethod:
         """Advance y, in the order of the tiles, by up to `steps` steps; return how many were taken."""
         raise NotImplementedError
 
-    def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        """The same, with an exchange of values between processes after each pass."""
+    def _steps_by_stages(self, y: tuple[Array, Array], time_step: float, steps: int, time: float) -> int:
+        """The same from `time` on, with terms added to each stage, and an exchange of values between processes."""
         raise NotImplementedError
 
     def _exchange(self, pair: tuple[Array, Array]) -> None:
@@ -109,9 +127,10 @@ class FusedMethod:
     def _any_unsound(self, h: Array, u: Array) -> bool:
         """Whether any process finds unsound values in a state that has been exchanged.
 
-        Only then are they counted again, as tiles also make values that another process computes, and make them wrong.
+        Where tiles found some they are counted again, as tiles also make values that another process computes, and make
+        them wrong; and where terms were added after the tiles had counted.
         """
-        count = count_unsound(h, u) if self._unsound.any() else 0
+        count = count_unsound(h, u) if self._added or self._unsound.any() else 0
         self._unsound[:] = 0
         self._unsound[0] = anywhere(self.model.processes, count)
         return bool(self._unsound[0] > 0)
@@ -123,7 +142,11 @@ class FusedMethod:
         slope = (result.thickness, result.normal_velocity) if in_order else self._stages[0]
         for values in slope:
             values.fill(0.0)
-        tile_kernels.tendency(*self._setting, self._in_order(state), slope, self._unsound)
+        at = self._in_order(state)
+        tile_kernels.tendency(*self._setting, at, slope, self._unsound)
+        if self._added:
+            self._added.evaluate(at, time)
+            self._added.add(1.0, slope)
         self._put_back(*slope, result)
 
     def _in_order(self, state: State) -> tuple[Array, Array]:
@@ -162,12 +185,19 @@ class FusedRungeKutta(FusedMethod):
         taken: int = tile_kernels.rk4_steps(*self._setting, y, *self._stages, time_step, steps, self._unsound)
         return taken
 
-    def _steps_with_exchange(self, y: tuple[Array, Array], time_step: float, steps: int) -> int:
-        """The stages of `rk4_steps`, with an exchange of values between processes after each."""
+    def _steps_by_stages(self, y: tuple[Array, Array], time_step: float, steps: int, time: float) -> int:
+        """See `FusedMethod`; the stages are those of `rk4_steps`."""
         fixed, (second, third, fourth) = (*self._setting, y), self._stages
+        stages = ((y, second, 0.0, 0.5), (second, third, 0.5, 0.5), (third, fourth, 0.5, 1.0), (fourth, y, 1.0, LAST))
         for taken in range(1, steps + 1):
-            for at, result, weight in ((y, second, 0.5), (second, third, 0.5), (third, fourth, 1.0), (fourth, y, 0.0)):
-                tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
+            begin = time + (taken - 1) * time_step
+            for at, result, node, weight in stages:
+                if self._added:
+                    self._added.evaluate(at, begin + node * time_step)
+                of_stage = 0.0 if weight == LAST else weight
+                tile_kernels.stage(*fixed, at, second, third, result, time_step, of_stage, self._unsound)
+                if self._added:
+                    self._added.add(weight * time_step, result)
                 self._exchange(result)
             if self._any_unsound(*y):
                 return taken

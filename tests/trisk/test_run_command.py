@@ -56,12 +56,14 @@ def test_a_field_that_there_is_not_is_refused_before_the_work(trisk, tmp_path: P
 def test_the_path_of_a_run_is_told(trisk, mesh_file: Path, tmp_path: Path) -> None:
     (tmp_path / "windy.py").write_text(WINDY)
     run = ("run", f"{tmp_path / 'windy.py'}:Windy", "--mesh", mesh_file, "--days", 0.05, "-o", tmp_path / "run")
-    code, _, err = trisk(*run)
+    assert trisk(*run)[0] == 0
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["loops"] == "fused"
+    code, _, err = trisk(*run, "--integrator", "fbrk3", "--force")
     assert code == 0
     assert "the tendency has the term wind: plain loops take the steps, at several times the cost" in err
     record = json.loads((tmp_path / "run" / "run.json").read_text())
     assert (record["loops"], record["forcings"]) == ("plain", ["wind"])
-    assert trisk(*run, "--force", "-q")[2] == ""
+    assert trisk(*run, "--integrator", "fbrk3", "--force", "-q")[2] == ""
     code, _, err = trisk("run", "williamson2", "--mesh", mesh_file, "--days", 0.05, "-o", tmp_path / "run", "--force")
     assert "plain loops" not in err
     assert json.loads((tmp_path / "run" / "run.json").read_text())["loops"] == "fused"

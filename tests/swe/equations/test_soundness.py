@@ -11,10 +11,7 @@ import pytest
 from cases import LakeAtRest, Williamson5
 from mesh import VoronoiMesh, build_operators, mesh_from_points
 from mesh.arrays import Array
-from swe import Forcing, RunError, Simulation
-from swe.equations.anticipation import Anticipation
-from swe.equations.dissipation import BiharmonicDissipation
-from swe.equations.model import ShallowWaterModel
+from swe import RunError, Simulation
 from swe.equations.soundness import (
     has_negative_kites,
     problem_at_vertices,
@@ -23,7 +20,6 @@ from swe.equations.soundness import (
     warning_of_vertices,
 )
 from swe.errors import InputError, SetupWarning
-from swe.tiles.fused import FusedRungeKutta
 
 
 @dataclass(frozen=True)
@@ -102,12 +98,3 @@ def test_without_a_directory_there_is_nothing_to_resume(icosahedral_mesh: Vorono
         simulation.run(5.0, progress=False)
     with pytest.raises(InputError, match=r"^the run broke off and cannot go on; make the simulation again$"):
         simulation.run(5.0, progress=False)
-
-
-def test_the_fused_method_takes_no_model_with_forcing(icosahedral_mesh: VoronoiMesh) -> None:
-    plain = Simulation(icosahedral_mesh, Williamson5()).model
-    wind = Forcing("wind", lambda mesh, state, time: 1e-6)
-    terms = [wind, Anticipation(plain.mesh, 1e4), BiharmonicDissipation(plain.mesh, 1e12)]
-    model = ShallowWaterModel(plain.mesh, plain.topography, plain.coriolis, plain.gravity, terms=terms)
-    with pytest.raises(InputError, match="the tendency has the term wind, which the fused method lacks"):
-        FusedRungeKutta(model)

@@ -78,7 +78,7 @@ def test_budgets_of_forcings_add_up(any_mesh: VoronoiMesh) -> None:
 
 def test_a_case_with_terms_runs_with_their_budgets(small_mesh: VoronoiMesh, tmp_path: Path) -> None:
     simulation = Simulation(small_mesh, WindyLake(), tmp_path, time_step=900.0, diagnostics_interval=900.0)
-    assert simulation.loops == "plain"
+    assert simulation.loops == "fused"
     simulation.run(days=0.25, progress=False)
     series = read_series(tmp_path / "diagnostics.nc")
     assert np.all(series["total_energy_rate_wind"][1:] > 0.0)

@@ -182,7 +182,7 @@ def test_a_run_leaves_the_budgets_of_its_terms(small_mesh: VoronoiMesh, tmp_path
             return ready()
 
     simulation = Simulation(small_mesh, All(), tmp_path, time_step=900.0, diagnostics_interval=900.0)
-    assert simulation.loops == "plain"
+    assert simulation.loops == "fused"
     simulation.run(days=0.25, progress=False)
     series = read_series(tmp_path / "diagnostics.nc")
     for name in NAMES[:-1]:
