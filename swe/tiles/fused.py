@@ -21,7 +21,7 @@ from swe.tiles.cutting import Tiles, build_tiles
 from swe.tiles.layout import LANES, MIRROR
 
 LAST = 1.0 / 6.0
-"""Weight of the last slope in a step; the stages before are in the states at which slopes were taken."""
+"""Weight of the last slope in a step of RK4, which `tile_kernels.stage` gives to a stage of weight 0."""
 
 
 def why_not_fused(model: ShallowWaterModel, integrator: Integrator = "rk4") -> str | None:
@@ -188,16 +188,15 @@ class FusedRungeKutta(FusedMethod):
     def _steps_by_stages(self, y: tuple[Array, Array], time_step: float, steps: int, time: float) -> int:
         """See `FusedMethod`; the stages are those of `rk4_steps`."""
         fixed, (second, third, fourth) = (*self._setting, y), self._stages
-        stages = ((y, second, 0.0, 0.5), (second, third, 0.5, 0.5), (third, fourth, 0.5, 1.0), (fourth, y, 1.0, LAST))
+        stages = ((y, second, 0.0, 0.5), (second, third, 0.5, 0.5), (third, fourth, 0.5, 1.0), (fourth, y, 1.0, 0.0))
         for taken in range(1, steps + 1):
             begin = time + (taken - 1) * time_step
             for at, result, node, weight in stages:
                 if self._added:
                     self._added.evaluate(at, begin + node * time_step)
-                of_stage = 0.0 if weight == LAST else weight
-                tile_kernels.stage(*fixed, at, second, third, result, time_step, of_stage, self._unsound)
+                tile_kernels.stage(*fixed, at, second, third, result, time_step, weight, self._unsound)
                 if self._added:
-                    self._added.add(weight * time_step, result)
+                    self._added.add((weight or LAST) * time_step, result)
                 self._exchange(result)
             if self._any_unsound(*y):
                 return taken
