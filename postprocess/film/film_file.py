@@ -51,6 +51,8 @@ def _write_mp4(path: Path, frames: Iterator[Pixels], size: tuple[int, int], fram
         codec="libx264",
         quality=None,
         macro_block_size=2,
+        # Films of two or three frames are no reason to warn.
+        ffmpeg_log_level="error",
         # The temporary name does not tell the format; the index goes first, so that browsers can begin at once.
         output_params=["-crf", str(QUALITY), "-f", "mp4", "-movflags", "+faststart"],
     )

@@ -57,8 +57,10 @@ def test_frames_follow_the_snapshots(run: Run, tmp_path: Path) -> None:
     assert (frames[0][:14, :60] != frames[2][:14, :60]).any()
 
 
-def test_days_choose_frames_and_colours(run: Run, tmp_path: Path) -> None:
+def test_days_choose_frames_and_colours(run: Run, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    """Which may be two, and ffmpeg has nothing to say of it."""
     frames = frames_of(film(run, "thickness", tmp_path / "h.mp4", size=SIZE, days=(1.0, 2.0)))
+    assert capfd.readouterr() == ("", "")
     assert len(frames) == 2
     np.testing.assert_allclose(at_middle_of_map(frames[0]), expected(0.0), atol=12.0)
 
