@@ -4,8 +4,9 @@ from typing import Any
 
 import pytest
 
+from postprocess.compare.shares import BANDS
 from postprocess.reports.mesh_verdict import best_mesh, compared_lines, cost_of_error, costs, finest_rows, mesh_verdict
-from postprocess.reports.sentences import where_in_words
+from postprocess.reports.sentences import where_in_words, zone_in_words
 from postprocess.studies.study_folder import StudyRow
 
 SIZES = (642, 2562, 10242)
@@ -167,3 +168,9 @@ def test_where_the_error_lives() -> None:
         "The squared error of scvt is spread: no band of latitude and no zone of the refinement holds 1.5 times its "
         "share of the area, and 7% of it are within two cells of one that is no hexagon (7.5% of the area)."
     )
+
+
+def test_bands_are_said_as_on_a_map() -> None:
+    words = ["south of 60°S", "between 60°S and 30°S", "between 30°S and the equator"]
+    words += ["between the equator and 30°N", "between 30°N and 60°N", "north of 60°N"]
+    assert [zone_in_words(band) for band in BANDS] == words

@@ -239,6 +239,8 @@ def test_a_simulation_shows_what_it_computes_and_how_far_it_is(small_mesh: Voron
     simulation.run(days=0.5, progress=False)
     assert "reached: day 0.5, 24 steps\n" in repr(simulation)
     assert repr(Simulation(small_mesh, Williamson2())).endswith("output: none>")
+    damped = Simulation(small_mesh, Williamson2(), anticipation=0.5, dissipation=1e15, wall_slip=0.25)
+    assert "  options: anticipation 0.5, dissipation 1e+15 m4/s, wall slip 0.25\n" in repr(damped)
     state = State(np.linspace(50.0, 200.0, 162), np.linspace(-7.0, 3.0, 480))
     assert repr(state) == (
         "<State of 162 cells and 480 edges\n  thickness: 50 to 200 m\n  normal velocity: -7 to 3 m/s>"
