@@ -169,6 +169,23 @@ def test_a_density_may_be_a_function_of_places() -> None:
     np.testing.assert_allclose(mesh.mesh_density, density(mesh.cell_points))
 
 
+@pytest.mark.parametrize("periodic", PERIODIC)
+def test_a_density_is_asked_within_the_plane_alone(periodic: str) -> None:
+    """Cells reach beyond it, where they are those of images."""
+    asked: list[np.ndarray] = []
+
+    def density(places: np.ndarray) -> np.ndarray:
+        asked.append(places)
+        return 1.0 + places[:, 0] / LENGTHS[0]
+
+    plane = Rectangle(*LENGTHS, periodic)
+    converge_on_plane(starting_points(plane, 100, start="random"), plane, density=density, limits=Limits(1e-3, 40))
+    places = np.concatenate(asked)[:, :2]
+    assert len(places) > 1000
+    assert (places >= 0.0).all()
+    assert (places <= LENGTHS).all()
+
+
 def write_grid(path: Path, turned: bool) -> Path:
     """Cell widths that fall along x from 3 to 1, on a grid."""
     axes = {"x": np.linspace(0.0, 3e5, 31), "y": np.linspace(0.0, 2e5, 5)[::-1]}

@@ -5,9 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from scipy.spatial import cKDTree
 
 from mesh import VoronoiMesh, hexagon_mesh
+from mesh.discrete.walls import wall_edges
 from mesh.geometry.surface import surface_of
+from mesh.parts.cutting import without_cells
 from postprocess.figures.paper import PlanePaper, paper_of
 from tests.postprocess.conftest import LENGTHS
 
@@ -38,6 +41,20 @@ def test_pixels_are_drawn_where_they_are(any_plane: VoronoiMesh) -> None:
     for row, column in ((0, 0), (5, 17), (rows - 1, 3)):
         place = left + (column + 0.5) * width, bottom + (row + 0.5) * height
         assert image.get_array()[row, column] == pytest.approx(place[0] + 3.0 * place[1], rel=1e-12)
+
+
+def test_pixels_without_cells_are_not_covered() -> None:
+    """Also where the first cell of an edge is the one that is missing."""
+    whole = hexagon_mesh((1e6, 1e6 * ROW), (16, 16), "none")
+    kept = np.hypot(whole.x_cell - 5e5, whole.y_cell - 4e5) > 2e5
+    part = without_cells(whole, ~kept)
+    assert len(np.unique(np.argmin(part.cells_on_edge[wall_edges(part)], axis=1))) == 2
+    raster = paper_of(part).raster
+    x, y = raster.places
+    nearest = cKDTree(np.column_stack([whole.x_cell, whole.y_cell])).query(np.column_stack([x, y]))[1]
+    within = np.hypot(x - 5e5, y - 4e5) < 3e5
+    np.testing.assert_array_equal(raster.covered[within], kept[nearest][within])
+    assert 0.05 < np.mean(~raster.covered) < 0.25
 
 
 def test_spots_are_the_images_that_are_drawn(periodic_plane: VoronoiMesh) -> None:
