@@ -10,18 +10,26 @@ from numpy.typing import NDArray
 
 from cases.base import Case, parameter
 from cases.basins import ON_THE_COAST, Basin
+from cases.sea_walls import stray_wall
 from mesh.arrays import Array
 from mesh.geometry.angles import about_zero
+from mesh.integrals.quadrature import Sampling
+from mesh.voronoi_mesh import VoronoiMesh
 from swe.equations.terms import Forcing
 from swe.errors import InputError
 from swe.forcing.drag import LinearDrag
 from swe.forcing.viscosity import Viscosity
 from swe.forcing.wind import SEA_WATER, WindStress
+from swe.state import State
 
 
 def mercator(latitude: Array) -> Array:
     """The coordinate y = artanh(sin(latitude)), which maps the sphere to a plane without changing angles."""
     return np.arctanh(np.sin(latitude))
+
+
+STAIRS = 1.0
+"""Roots of the area of a cell by which a coast may miss that of the sea: stairs do by 0.6, smooth corners by more."""
 
 
 @dataclass(frozen=True)
@@ -78,6 +86,20 @@ class Gyre(Basin):
         """See `Basin`."""
         beyond = np.abs(self._from_middle(longitude)) > 0.5 * self.width + ON_THE_COAST
         return np.asarray(beyond | (latitude < self.south - ON_THE_COAST) | (latitude > self.north + ON_THE_COAST))
+
+    def state_on(self, mesh: VoronoiMesh, time: float = 0.0, sampling: Sampling = "point") -> State:
+        """See `Basin`. Raises `InputError` if the mesh has a coast within the sea too."""
+        state = super().state_on(mesh, time, sampling)
+        lon, lat = mesh.lon_vertex, mesh.lat_vertex
+        along = (0.5 * self.width - np.abs(self._from_middle(lon))) * np.cos(lat)
+        away = self.radius * np.abs([along, lat - self.south, lat - self.north]).min(axis=0)
+        stray = stray_wall(mesh, away, STAIRS)
+        if stray is not None:
+            raise InputError(
+                f"{self.name} needs a mesh of all of {self.basin}, but this one has a coast at "
+                f"{math.degrees(lon[stray]):.4g} E, {math.degrees(lat[stray]):.4g} N; take another region"
+            )
+        return state
 
     def in_box(self, longitude: Array, latitude: Array) -> tuple[Array, Array]:
         """Longitude from the western coast, and Mercator's y from the southern one; at the coast, if beyond it."""

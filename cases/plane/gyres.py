@@ -13,6 +13,7 @@ from cases.gyres import stommel_profile
 from cases.munk import Place, evaluated, solution
 from cases.plane.base import StreamfunctionCase
 from cases.plane.lengths import require_periodic
+from cases.sea_walls import stray_wall
 from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
 from mesh.voronoi_mesh import VoronoiMesh
@@ -21,6 +22,9 @@ from swe.errors import InputError
 from swe.forcing.drag import LinearDrag
 from swe.forcing.viscosity import Viscosity
 from swe.forcing.wind import SEA_WATER, WindStress
+
+OUTLINES = 0.3
+"""Roots of the area of a cell by which outlines of hexagons leave a straight wall, at most: 0.27."""
 
 
 @dataclass(frozen=True)
@@ -77,6 +81,13 @@ class GyreBox(StreamfunctionCase):
                     f"{self.name} is in a box from 0 to {axis}_length = {length:.10g} m in {axis}, but the mesh has "
                     f"cells from {centres.min():.6g} to {centres.max():.6g} m; set {axis}_length, or take another mesh"
                 )
+        x, y = mesh.x_vertex, mesh.y_vertex
+        stray = stray_wall(mesh, np.abs([x, x - self.x_length, y, y - self.y_length]).min(axis=0), OUTLINES)
+        if stray is not None:
+            raise InputError(
+                f"{self.name} is in a box of x_length = {self.x_length:.10g} by y_length = {self.y_length:.10g} m, but "
+                f"the mesh has a wall at x = {x[stray]:.6g}, y = {y[stray]:.6g} m; set these, or take another mesh"
+            )
 
     def streamfunction_on(self, mesh: VoronoiMesh, time: float) -> Array:
         """See `StreamfunctionCase`; the walls of the mesh are streamlines, where it vanishes.

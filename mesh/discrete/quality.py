@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from mesh.arrays import Array, Index, by_blocks
 from mesh.density.named import Density, uniform
 from mesh.density.record import density_of
-from mesh.discrete.walls import has_walls, wall_edges
+from mesh.discrete.walls import boundary_vertices, has_walls, wall_edges
 from mesh.geometry.sphere import arc_length, dot, normalize
 from mesh.geometry.surface import surface_of
 from mesh.integrals.moments import masses_and_moments
@@ -18,8 +18,11 @@ from mesh.shown import Rows, Shown
 from mesh.triangulation.moving import Triangulation
 from mesh.voronoi_mesh import VoronoiMesh
 
-STRAIGHT = 1e-6
-"""Part of the area of a cell up to which it is that of its polygon: files have seven digits or more."""
+STRAIGHT = 1e-9
+"""Part of the area of a cell that a wall may take away or add and count as straight."""
+
+ROUND_OFF = 10.0
+"""Times the round-off of the largest coordinate, over the root of an area, by which that area may be wrong."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -173,14 +176,23 @@ def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
 
 
 def bent_cells(mesh: VoronoiMesh) -> NDArray[np.bool_]:
-    """Which cells (n_cells,) have a wall that bends between its vertices, so that their areas are not of polygons."""
-    bent, surface = np.zeros(mesh.n_cells, bool), surface_of(mesh)
+    """Which cells (n_cells,) have a wall that bends between its vertices, so that their areas are not of polygons.
+
+    Areas may differ by the round-off of places, which is that of single precision where kites at walls, which a file
+    gives, have no more digits.
+    """
+    bent, surface, unit = np.zeros(mesh.n_cells, bool), surface_of(mesh), mesh.length_unit
     cells = np.unique(mesh.cells_on_edge[wall_edges(mesh)].max(axis=1))
+    if not len(cells):
+        return bent
     ring = np.where(mesh.on_ring[cells], mesh.vertices_on_cell[cells], mesh.vertices_on_cell[cells, :1])
-    corners = mesh.vertex_points[ring] / mesh.length_unit
-    centres = mesh.cell_points[cells, None, :] / mesh.length_unit
-    areas = surface.triangle_area(centres, corners, np.roll(corners, -1, axis=1)).sum(axis=1) * mesh.length_unit**2
-    bent[cells] = np.abs(areas - mesh.area_cell[cells]) > STRAIGHT * mesh.area_cell[cells]
+    corners, centres = mesh.vertex_points[ring] / unit, mesh.cell_points[cells, None] / unit
+    found = surface.triangle_area(centres, corners, np.roll(corners, -1, axis=1)).sum(axis=1)
+    areas = mesh.area_cell[cells]
+    kites = mesh.kite_areas_on_vertex[boundary_vertices(mesh)]
+    digits = np.finfo(np.float32 if (kites.astype(np.float32) == kites).all() else np.float64)
+    round_off = ROUND_OFF * digits.eps * np.abs(mesh.vertex_points).max() / np.sqrt(areas)
+    bent[cells] = np.abs(found * unit**2 / areas - 1.0) > np.maximum(STRAIGHT, round_off)
     return bent
 
 

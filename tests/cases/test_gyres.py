@@ -10,6 +10,8 @@ from cases.gyres import Gyre
 from mesh import VoronoiMesh, build_operators, scvt_mesh
 from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
+from mesh.geometry.sphere import from_lonlat
+from mesh.parts.culling import culled
 from mesh.parts.cutting import without_cells
 from mesh.parts.mesh_part import cut_part
 from swe import InputError, Simulation
@@ -111,6 +113,16 @@ def test_a_mesh_of_more_than_the_basin_is_refused(small_mesh: VoronoiMesh) -> No
     )
     with pytest.raises(InputError, match=words):
         Simulation(small_mesh, Stommel())
+
+
+def test_a_mesh_of_less_than_the_basin_is_refused(fine_mesh: VoronoiMesh) -> None:
+    case, outside = Stommel(), Stommel().is_outside(fine_mesh.lon_cell, fine_mesh.lat_cell)
+    assert case.state_on(culled(fine_mesh, ~outside).scaled(case.radius)).thickness.size == np.count_nonzero(~outside)
+    words = r"^stommel needs a mesh of all of the box 0,60,10,50 in degrees, but this one has a coast at \d"
+    island = fine_mesh.cell_points @ from_lonlat(np.array(0.5), np.array(0.5)) > 0.98
+    for beyond in (fine_mesh.lon_cell > 0.8, fine_mesh.lat_cell < 0.4, fine_mesh.lat_cell > 0.7, island):
+        with pytest.raises(InputError, match=words):
+            case.state_on(culled(fine_mesh, ~(outside | beyond)).scaled(case.radius))
 
 
 @pytest.mark.parametrize("sides", [{"east": -0.1}, {"east": 7.0}, {"south": 1.0}, {"north": 1.55}])

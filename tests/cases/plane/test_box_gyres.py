@@ -8,6 +8,7 @@ from cases.plane.gyres import GyreBox
 from mesh import VoronoiMesh, build_operators, hexagon_mesh
 from mesh.arrays import Array
 from mesh.discrete.walls import wall_edges
+from mesh.parts.culling import culled
 from swe import InputError, Simulation
 from swe.forcing.wind import SEA_WATER
 from tests.cases.plane.slopes import Slopes, component, relative_error
@@ -154,3 +155,18 @@ def test_what_does_not_fit_is_refused() -> None:
     object.__setattr__(moved, "y_cell", moved.y_cell - 1e5)
     with pytest.raises(InputError, match=r"y_length = \d+\.?\d* m in y, but the mesh has cells from -45873\.4 to"):
         StommelBox(y_length=1e6 * ROW).state_on(moved)
+
+
+@pytest.mark.parametrize("lengths", [{"x_length": 1.03e6}, {"y_length": 9.2e5}, {"x_length": 2e6, "y_length": 2e6}])
+def test_a_box_that_is_too_small_is_refused(lengths: dict[str, float]) -> None:
+    with pytest.raises(InputError, match=r"but the mesh has a wall at x = .*; set these, or take another mesh"):
+        StommelBox(**lengths).state_on(box(32))
+
+
+def test_walls_within_the_box_are_refused() -> None:
+    mesh = box(16)
+    island = np.hypot(mesh.x_cell - 5e5, mesh.y_cell - 4e5) < 1e5
+    with pytest.raises(
+        InputError, match=r"munk-box is in a box of x_length = 1000000 by y_length = 866025\.4038 m, but"
+    ):
+        MunkBox().state_on(culled(mesh, ~island))

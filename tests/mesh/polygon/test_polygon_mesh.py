@@ -2,10 +2,11 @@
 
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 
-from mesh import MeshError, VoronoiMesh, mesh_quality, polygon_mesh, read_mesh, validate_mesh, write_mesh
+from mesh import MeshError, MeshWarning, VoronoiMesh, mesh_quality, polygon_mesh, read_mesh, validate_mesh, write_mesh
 from mesh.arrays import Array
 from mesh.coast.sea_mesh import sea_mesh
 from mesh.conventions import MESH_VARIABLES
@@ -98,6 +99,21 @@ def test_only_corners_that_stick_out_between_long_walls_are_vertices() -> None:
     saw = [(x, 1e4 * (x % 2e4 > 0)) for x in np.arange(0.0, SIDE + 1, 1e4)]
     assert count([*saw, (SIDE, SIDE), (0.0, SIDE)], 100) == 2
     assert count([*saw, (SIDE, SIDE), (0.0, SIDE)], 100_000) == 53
+
+
+def test_straight_walls_are_straight_in_single_precision_too(angled: VoronoiMesh, tmp_path: Path) -> None:
+    write_mesh(angled, tmp_path / "double.nc")
+    with netCDF4.Dataset(tmp_path / "double.nc") as old, netCDF4.Dataset(tmp_path / "single.nc", "w") as new:
+        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
+        for name, dimension in old.dimensions.items():
+            new.createDimension(name, len(dimension))
+        for name, variable in old.variables.items():
+            kind = "f4" if variable.dtype.kind == "f" else variable.dtype
+            new.createVariable(name, kind, variable.dimensions)[:] = variable[:]
+    with pytest.warns(MeshWarning, match="coordinates are in single precision"):
+        single = read_mesh(tmp_path / "single.nc")
+    assert np.count_nonzero(bent_cells(angled)) == 1
+    np.testing.assert_array_equal(bent_cells(single), bent_cells(angled))
 
 
 def test_a_wall_bends_where_the_polygon_turns_inwards(angled: VoronoiMesh) -> None:
