@@ -74,13 +74,15 @@ def quality_and_note(mesh: VoronoiMesh, density: Density | None = None) -> tuple
     notes = [note] if note else []
     if mesh.fixed_cells is not None:
         notes.append(f"{np.count_nonzero(mesh.fixed_cells)} generators that were held fixed are not counted")
-    bent = np.count_nonzero(bent_cells(mesh))
-    if bent:
-        notes.append(f"cells in which a wall bends are not counted ({bent}), as the mesh does not tell where")
-    return _measured(mesh, density), "; ".join(notes)
+    bent = bent_cells(mesh)
+    if bent.any():
+        count = np.count_nonzero(bent)
+        notes.append(f"cells in which a wall bends are not counted ({count}), as the mesh does not tell where")
+    return _measured(mesh, density, ~bent), "; ".join(notes)
 
 
-def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
+def _measured(mesh: VoronoiMesh, density: Density | None, known: NDArray[np.bool_]) -> Quality:
+    """The measures; the centroids of the cells that are `known` (n_cells,) count."""
     chords = edge_chords(mesh)
     sigma, q = neighbour_distance_ratio(mesh, chords), triangle_quality(mesh, chords)
     obtuse = obtuse_triangles(mesh, chords)
@@ -93,7 +95,7 @@ def _measured(mesh: VoronoiMesh, density: Density | None) -> Quality:
         sigma_min=float(sigma.min()),
         q_avg=float(q.mean()),
         q_min=float(q.min()),
-        residual=float("nan") if density is None else centroid_residual(mesh, density),
+        residual=float("nan") if density is None else _centroid_residual(mesh, density, known),
         obtuse=int(np.count_nonzero(obtuse)),
         area_ratio=float(mesh.area_cell.max() / mesh.area_cell.min()),
     )
@@ -162,15 +164,14 @@ def obtuse_triangles(mesh: VoronoiMesh, chords: Array | None = None) -> NDArray[
     return by_blocks(obtuse, mesh.edges_on_vertex)
 
 
-def centroid_residual(mesh: VoronoiMesh, density: Density) -> float:
+def _centroid_residual(mesh: VoronoiMesh, density: Density, known: NDArray[np.bool_]) -> float:
     """Largest distance from a generator that was free to move to its constrained centroid, in mean spacings.
 
-    Not a number where the centroid of no cell is known.
+    Not a number where the centroid of no cell is `known` (n_cells,).
     """
-    distances, spacing = _centroid_distances(mesh, density)
-    known = ~bent_cells(mesh)
     if not known.any():
         return float("nan")
+    distances, spacing = _centroid_distances(mesh, density)
     free = known if mesh.fixed_cells is None else known & ~mesh.fixed_cells
     return float(distances[free].max(initial=0.0)) / spacing
 

@@ -10,6 +10,7 @@ from mesh import MeshError, MeshWarning, VoronoiMesh, read_mesh, write_mesh
 from mesh.conventions import BY_NAME, DIMENSIONS, MESH_VARIABLES
 from mesh.discrete.identities import identity_residuals
 from mesh.files.io import mesh_hash
+from tests.retyped_files import in_types
 
 
 @pytest.fixture
@@ -208,18 +209,6 @@ def test_what_no_step_depends_on_is_replaced(mesh_file: Path) -> None:
         r"give$"
     )
     assert_same_arrays(warned_of(mesh_file, words), original, 1e-15)
-
-
-def in_types(source: Path, target: Path, **types: str) -> Path:
-    """Copy a mesh file with other types for its kinds of numbers, as `f="f4"` or `i="i8"`."""
-    with netCDF4.Dataset(source) as old, netCDF4.Dataset(target, "w") as new:
-        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
-        for name, dimension in old.dimensions.items():
-            new.createDimension(name, len(dimension))
-        for name, variable in old.variables.items():
-            kind = types.get(variable.dtype.kind, variable.dtype)
-            new.createVariable(name, kind, variable.dimensions)[:] = variable[:]
-    return target
 
 
 def test_single_precision_is_taken_at_its_generators(mesh_file: Path, tmp_path: Path) -> None:

@@ -2,7 +2,6 @@
 
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import pytest
 
@@ -21,6 +20,7 @@ from mesh.polygon.rings import checked_rings
 from mesh.polygon.starts import starting_points
 from mesh.polygon.walls import Walls
 from tests.mesh.polygon.rooms import ANGLED, CORNERS, OUTER_CORNERS, PLANE, ROOMS, SIDE, asked_for, circle
+from tests.retyped_files import in_types
 
 shapely = pytest.importorskip("shapely")
 
@@ -103,13 +103,7 @@ def test_only_corners_that_stick_out_between_long_walls_are_vertices() -> None:
 
 def test_straight_walls_are_straight_in_single_precision_too(angled: VoronoiMesh, tmp_path: Path) -> None:
     write_mesh(angled, tmp_path / "double.nc")
-    with netCDF4.Dataset(tmp_path / "double.nc") as old, netCDF4.Dataset(tmp_path / "single.nc", "w") as new:
-        new.setncatts({name: old.getncattr(name) for name in old.ncattrs()})
-        for name, dimension in old.dimensions.items():
-            new.createDimension(name, len(dimension))
-        for name, variable in old.variables.items():
-            kind = "f4" if variable.dtype.kind == "f" else variable.dtype
-            new.createVariable(name, kind, variable.dimensions)[:] = variable[:]
+    in_types(tmp_path / "double.nc", tmp_path / "single.nc", f="f4")
     with pytest.warns(MeshWarning, match="coordinates are in single precision"):
         single = read_mesh(tmp_path / "single.nc")
     assert np.count_nonzero(bent_cells(angled)) == 1
