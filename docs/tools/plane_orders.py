@@ -1,6 +1,6 @@
 """Orders of the exact cases on planes, for docs/planes.md: python docs/tools/plane_orders.py [CELLS ...].
 
-Centroidal Voronoi meshes of random points, and both schemes. 400, 1600, 6400 and 25600 cells take ten minutes.
+Centroidal Voronoi meshes of random points, and both schemes. 400, 1600, 6400 and 25600 cells take some minutes.
 """
 
 import math
